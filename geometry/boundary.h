@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "geometry/nurbs/curve.h"
+#include "geometry/nurbs/surface.h"
+
+namespace isorim::geometry {
+
+/// What a boundary in Dim dimensions is made of: curves in the plane, surfaces in space.
+template <int Dim>
+using PatchShape = std::conditional_t<Dim == 2, NurbsCurve<2>, NurbsSurface<3>>;
+
+/// One piece of a boundary. Its outward normal is `orientation` times the natural one: (y', -x') for a plane curve
+/// (the domain on its left), S_u x S_v for a surface. The shape itself stays as it was given.
+template <int Dim>
+struct Patch {
+  /// Unique within a boundary; what boundary conditions and messages call it.
+  std::string name;
+  PatchShape<Dim> shape;
+  /// +1 or -1.
+  int orientation = 1;
+};
+
+/// The boundary of a region of the plane (Dim = 2) or of a solid (Dim = 3).
+template <int Dim>
+struct Boundary {
+  std::vector<Patch<Dim>> patches;
+};
+
+}  // namespace isorim::geometry
