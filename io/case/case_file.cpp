@@ -1,0 +1,145 @@
+#include "io/case/case_file.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+namespace isorim::io {
+namespace {
+
+std::string shape_text(int rows, int columns) {
+  if (columns > 1) return fmt::format("{} rows of {} reals", rows, columns);
+  return rows > 1 ? fmt::format("a list of {} reals", rows) : "a real";
+}
+
+/// Rows and columns of a quantity's value.
+std::pair<int, int> value_shape(const std::string& quantity, int dim) {
+  if (quantity == "centroid" || quantity == "principal_moments") return {dim, 1};
+  if (quantity == "inertia" || quantity == "principal_axes") return {dim, dim};
+  return {1, 1};
+}
+
+std::vector<std::string> quantity_names(const CaseKeys& keys, int dim) {
+  std::vector<std::string> names = property_names(dim);
+  for (const IntegralKeys& integral : keys.integral) names.push_back(integral.name);
+  return names;
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void complain_unknown_quantity(const std::string& name, const std::vector<std::string>& known, const KeyPlace& where,
+                               Complaints& complaints) {
+  complaints.add(where, fmt::format("found the quantity \"{}\"{}; expected one of {}", name, did_you_mean(name, known),
+                                    fmt::join(known, ", ")));
+}
+
+void check_integrals(const CaseKeys& keys, int dim, Complaints& complaints) {
+  std::vector<std::string> taken = property_names(dim);
+  for (const IntegralKeys& integral : keys.integral) {
+    if (contains(taken, integral.name)) {
+      complaints.add(integral.where,
+                     fmt::format("the name \"{}\" is taken by {}", integral.name,
+                                 contains(property_names(dim), integral.name) ? "a property" : "another integral"));
+    }
+    taken.push_back(integral.name);
+  }
+}
+
+void check_expectations(const CaseKeys& keys, int dim, Complaints& complaints) {
+  const std::vector<std::string> known = quantity_names(keys, dim);
+  for (const auto& [name, expectation] : keys.expect.quantities) {
+    if (!contains(known, name)) {
+      complain_unknown_quantity(name, known, expectation.where, complaints);
+      continue;
+    }
+    if (name == "mass" && !keys.properties.density) {
+      complaints.add(expectation.where, "a mass is expected but [properties] has no density");
+    }
+    const auto [rows, columns] = value_shape(name, dim);
+    if (expectation.value.values.empty()) continue;
+    if (expectation.value.rows != rows || expectation.value.columns != columns) {
+      complaints.add(expectation.value.where,
+                     fmt::format("found {}; expected {}", shape_text(expectation.value.rows, expectation.value.columns),
+                                 shape_text(rows, columns)));
+    }
+  }
+}
+
+void check_convergence(const CaseKeys& keys, int dim, Complaints& complaints) {
+  if (!keys.convergence) return;
+  const std::vector<std::string> known = quantity_names(keys, dim);
+  const auto is_expected = [&](const std::string& name) {
+    return std::any_of(keys.expect.quantities.begin(), keys.expect.quantities.end(),
+                       [&](const auto& expected) { return expected.first == name; });
+  };
+  for (const std::string& name : keys.convergence->quantities) {
+    if (!contains(known, name)) {
+      complain_unknown_quantity(name, known, keys.convergence->where, complaints);
+    } else if (!is_expected(name)) {
+      complaints.add(keys.convergence->where,
+                     fmt::format("the quantity \"{}\" has no expected value to compare with in [expect]", name));
+    }
+  }
+  if (keys.expect.quantities.empty()) {
+    complaints.add(keys.convergence->where, "found no expected values to compare with; expected a section [expect]");
+  }
+}
+
+void check_poles(const CaseKeys& keys, int dim, Complaints& complaints) {
+  const auto check = [&](const std::optional<Coordinates>& pole) {
+    if (!pole || pole->values.empty() || static_cast<int>(pole->values.size()) == dim) return;
+    complaints.add(pole->where, fmt::format("found {} coordinates; expected {}", pole->values.size(), dim));
+  };
+  check(keys.properties.pole);
+  for (const IntegralKeys& integral : keys.integral) check(integral.pole);
+}
+
+}  // namespace
+
+std::vector<std::string> property_names(int dim) {
+  const std::string boundary = dim == 2 ? "perimeter" : "area";
+  const std::string domain = dim == 2 ? "area" : "volume";
+  return {boundary, domain, "centroid", "inertia", "principal_moments", "mass", "closure_defect"};
+}
+
+int dimension(const GeometryKeys& geometry) {
+  return std::visit(
+      [](const auto& shape) {
+        using Keys = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<Keys, NurbsKeys>) return shape.patches.empty() ? 2 : 3;
+        const bool plane = std::is_same_v<Keys, CircleKeys> || std::is_same_v<Keys, EllipseKeys> ||
+                           std::is_same_v<Keys, EllipseArcKeys> || std::is_same_v<Keys, RectangleKeys> ||
+                           std::is_same_v<Keys, PolygonKeys> || std::is_same_v<Keys, RegionKeys>;
+        return plane ? 2 : 3;
+      },
+      geometry);
+}
+
+CaseKeys read_keys(const Value& root) {
+  CaseKeys keys;
+  Complaints complaints;
+  const bool geometry_is_known = schema<CaseKeys>().read(root, keys, {root.place, ""}, complaints);
+  if (geometry_is_known || root.find("geometry")) {
+    const int dim = dimension(keys.geometry);
+    if (geometry_is_known) {
+      check_integrals(keys, dim, complaints);
+      check_expectations(keys, dim, complaints);
+      check_convergence(keys, dim, complaints);
+      check_poles(keys, dim, complaints);
+    }
+  }
+  complaints.throw_if_any();
+  return keys;
+}
+
+CaseFile read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  Value root = read_toml(path);
+  for (const std::string& assignment : overrides) apply_override(root, assignment);
+  return {path, read_keys(root), to_toml(root)};
+}
+
+}  // namespace isorim::io

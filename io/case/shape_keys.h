@@ -1,0 +1,227 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "io/case/schema.h"
+
+/// What a case file says of shapes, as it stands there: angles in degrees, lengths in the unit of the shape. The
+/// declarations (types, ranges, texts) are in shape_declarations.cpp, the construction in shape_builder.h.
+namespace isorim::io {
+
+struct RotationKeys {
+  std::optional<Eigen::Vector3d> axis;
+  double angle = 0.0;
+  Coordinates point;
+  KeyPlace where;
+};
+
+struct MirrorKeys {
+  Coordinates point;
+  Coordinates normal;
+  KeyPlace where;
+};
+
+/// Applied in the order scale, mirror, rotate, translate.
+struct TransformKeys {
+  std::optional<NumberArray> scale;
+  std::optional<MirrorKeys> mirror;
+  std::optional<RotationKeys> rotate;
+  std::optional<Coordinates> translate;
+  KeyPlace where;
+};
+
+/// What every shape may have.
+struct ShapeKeys {
+  std::string name;
+  OneOrMany<TransformKeys> transform;
+  KeyPlace where;
+};
+
+// --- Curves ---------------------------------------------------------------------------------------------------
+
+struct LineKeys : ShapeKeys {
+  Coordinates from;
+  Coordinates to;
+};
+
+struct PolylineKeys : ShapeKeys {
+  std::vector<Coordinates> points;
+};
+
+struct ArcKeys : ShapeKeys {
+  double radius = 0.0;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  Eigen::Vector2d angles = {0.0, 360.0};
+};
+
+struct EllipseArcKeys : ShapeKeys {
+  Eigen::Vector2d radii = Eigen::Vector2d::Zero();
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  double rotation = 0.0;
+  Eigen::Vector2d angles = {0.0, 360.0};
+};
+
+struct NurbsCurveKeys : ShapeKeys {
+  int degree = 0;
+  std::vector<double> knots;
+  std::vector<Coordinates> points;
+  std::vector<double> weights;
+  std::vector<Coordinates> homogeneous;
+  bool periodic = false;
+};
+
+struct CircleKeys : ShapeKeys {
+  double radius = 0.0;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+};
+
+struct EllipseKeys : ShapeKeys {
+  Eigen::Vector2d radii = Eigen::Vector2d::Zero();
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  double rotation = 0.0;
+};
+
+struct RectangleKeys : ShapeKeys {
+  Eigen::Vector2d size = Eigen::Vector2d::Zero();
+  Eigen::Vector2d corner = Eigen::Vector2d::Zero();
+};
+
+struct PolygonKeys : ShapeKeys {
+  std::vector<Coordinates> points;
+};
+
+using CurveKeys = std::variant<LineKeys, PolylineKeys, ArcKeys, EllipseArcKeys, NurbsCurveKeys, CircleKeys, EllipseKeys,
+                               RectangleKeys, PolygonKeys>;
+
+/// Curves that follow one another and close.
+struct PathKeys : ShapeKeys {
+  std::vector<CurveKeys> curves;
+};
+
+// --- Regions of the plane -------------------------------------------------------------------------------------
+
+/// What the author says a loop is; checked against the nesting that is found.
+enum class LoopRole { any, outer, hole };
+
+template <class Keys>
+struct LoopOf : Keys {
+  LoopRole role = LoopRole::any;
+};
+
+using LoopKeys = std::variant<LoopOf<PathKeys>, LoopOf<CircleKeys>, LoopOf<EllipseKeys>, LoopOf<RectangleKeys>,
+                              LoopOf<PolygonKeys>, LoopOf<NurbsCurveKeys>>;
+
+struct RegionKeys : ShapeKeys {
+  std::vector<LoopKeys> loops;
+};
+
+using PlaneRegionKeys = std::variant<RegionKeys, CircleKeys, EllipseKeys, RectangleKeys, PolygonKeys, PathKeys>;
+
+// --- Surfaces and solids --------------------------------------------------------------------------------------
+
+struct SphereKeys : ShapeKeys {
+  double radius = 0.0;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+};
+
+struct EllipsoidKeys : ShapeKeys {
+  Eigen::Vector3d radii = Eigen::Vector3d::Zero();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+};
+
+struct TorusKeys : ShapeKeys {
+  double major_radius = 0.0;
+  double minor_radius = 0.0;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+};
+
+struct CylinderKeys : ShapeKeys {
+  double radius = 0.0;
+  double height = 0.0;
+  Eigen::Vector3d base = Eigen::Vector3d::Zero();
+};
+
+struct ConeKeys : ShapeKeys {
+  std::optional<double> radius;
+  std::optional<Eigen::Vector2d> radii;
+  double height = 0.0;
+  Eigen::Vector3d base = Eigen::Vector3d::Zero();
+};
+
+struct BoxKeys : ShapeKeys {
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  Eigen::Vector3d corner = Eigen::Vector3d::Zero();
+};
+
+struct AxisKeys {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
+  KeyPlace where;
+};
+
+/// Exactly one of `profile` and `region`.
+struct RevolveKeys : ShapeKeys {
+  std::vector<CurveKeys> profile;
+  std::optional<PlaneRegionKeys> region;
+  AxisKeys axis;
+  double angle = 360.0;
+};
+
+/// Exactly one of `profile` and `region`.
+struct ExtrudeKeys : ShapeKeys {
+  std::vector<CurveKeys> profile;
+  std::optional<PlaneRegionKeys> region;
+  Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+};
+
+struct RuledKeys : ShapeKeys {
+  std::vector<CurveKeys> curves;
+};
+
+struct LoftKeys : ShapeKeys {
+  std::vector<CurveKeys> sections;
+  int degree = 3;
+};
+
+struct DiscKeys : ShapeKeys {
+  double radius = 0.0;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+};
+
+struct QuadrilateralKeys : ShapeKeys {
+  std::vector<Coordinates> corners;
+};
+
+struct NurbsPatchKeys : ShapeKeys {
+  Eigen::Vector2i degrees = Eigen::Vector2i::Zero();
+  std::vector<double> knots_u;
+  std::vector<double> knots_v;
+  PointGrid points;
+  NumberArray weights;
+  PointGrid homogeneous;
+};
+
+using SurfaceKeys = std::variant<NurbsPatchKeys, QuadrilateralKeys, DiscKeys, RevolveKeys, ExtrudeKeys, RuledKeys,
+                                 LoftKeys, SphereKeys, EllipsoidKeys, TorusKeys, CylinderKeys, ConeKeys, BoxKeys>;
+
+struct PatchesKeys : ShapeKeys {
+  std::vector<SurfaceKeys> patches;
+};
+
+/// Exactly one of `curves` (a region of the plane) and `patches` (surfaces in space).
+struct NurbsKeys : ShapeKeys {
+  std::vector<LoopOf<NurbsCurveKeys>> curves;
+  std::vector<NurbsPatchKeys> patches;
+};
+
+using GeometryKeys = std::variant<CircleKeys, EllipseKeys, EllipseArcKeys, RectangleKeys, PolygonKeys, RegionKeys,
+                                  NurbsKeys, SphereKeys, EllipsoidKeys, TorusKeys, CylinderKeys, ConeKeys, BoxKeys,
+                                  RevolveKeys, ExtrudeKeys, RuledKeys, LoftKeys, PatchesKeys>;
+
+}  // namespace isorim::io
