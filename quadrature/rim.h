@@ -38,14 +38,17 @@ struct IntegralResult {
   Status status = Status::converged;
 };
 
-/// The pole that is used when none is asked for: the middle of the control net's bounding box.
+/// The pole of a domain integral when none is asked for: a point from which the whole boundary is seen, so that every
+/// ray stays in the domain; the middle of the control net's bounding box itself if it is one, and also where none is
+/// found (an annulus has none). Found from tangent planes at sampled points.
 template <int Dim>
 geometry::Point<Dim> default_pole(const geometry::ElementTable<Dim>& table);
 
 /// int_Omega f over the domain that the closed boundary encloses.
 ///
-/// The integrand is met on the rays from the pole to the boundary; where the domain is not star-shaped about the
-/// pole these leave it, so the integrand must be defined there too. Throws NumericalError, naming the point and
+/// The tolerance is relative to the integral, or to a thousandth of the integral of |f| where cancellation makes that
+/// larger. The integrand is met on the rays from the pole to the boundary; where the domain is not star-shaped about
+/// the pole these leave it, so the integrand must be defined there too. Throws NumericalError, naming the point and
 /// whether the boundary is star-shaped about the pole, if a value is not finite.
 template <int Dim>
 IntegralResult integrate_over_domain(const geometry::ElementTable<Dim>& table, const IntegrandFactory<Dim>& integrand,
@@ -56,7 +59,7 @@ template <int Dim>
 IntegralResult integrate_over_boundary(const geometry::ElementTable<Dim>& table, const IntegrandFactory<Dim>& integrand,
                                        const Options& options);
 
-/// Some outward normal looks towards the pole, so rays from it leave the domain.
+/// No outward normal looks towards the pole, so the rays from it stay in the domain. Judged at sampled points.
 template <int Dim>
 bool is_star_shaped_about(const geometry::ElementTable<Dim>& table, const geometry::Point<Dim>& pole);
 

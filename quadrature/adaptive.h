@@ -1,0 +1,261 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "quadrature/element_sums.h"
+
+/// The one adaptive scheme behind every integral: the order is raised in the directions that need it, then the piece
+/// is bisected, until the estimated error meets the piece's allowance.
+///
+/// A piece is integrated by two tensor Gauss-Legendre rules, n - 2 and n points in each direction; the second is the
+/// value and their difference the estimate. It is an estimate of the error of the *first* rule, so for integrands that
+/// are analytic near the piece it is far above the error of the value. Where raising the order gains little (a
+/// kink, a cusp, a pole nearby) the estimate is enlarged by the sum of the geometric series that the observed gain
+/// suggests.
+namespace isorim::quadrature {
+
+/// What AdaptiveIntegrator asks of the thing to integrate: K integrals at once over pieces of D-dimensional cells.
+template <class E>
+concept PieceEvaluator = requires(const E& evaluator, const typename E::Piece& piece,
+                                  std::span<const typename E::Piece* const> batch, const Orders<E::directions>& orders,
+                                  std::span<typename E::Values> values, typename E::Values& difference) {
+  // Bisections that led to the piece.
+  { piece.depth } -> std::convertible_to<int>;
+  // Orders at which the error is expected to meet the allowance.
+  { evaluator.start_orders(piece) } -> std::same_as<Orders<E::directions>>;
+  // Two pieces may stand in one batch.
+  { evaluator.same_kind(piece, piece) } -> std::same_as<bool>;
+  { E::batch_size } -> std::convertible_to<int>;
+  evaluator.evaluate(batch, orders, values);
+  // The two halves in a direction.
+  { evaluator.split(piece, 0) } -> std::same_as<std::pair<typename E::Piece, typename E::Piece>>;
+  // The absolute error, above zero, that each of the K integrals may have on a piece where they have that value.
+  { evaluator.allowance(piece, difference) } -> std::same_as<typename E::Values>;
+  // Sets the differences of what the rule integrates exactly to zero.
+  evaluator.clear_exact(piece, orders, difference);
+};
+
+/// Sums over pieces, in the order in which they were finished.
+template <class Values>
+struct AdaptiveTotals {
+  Values sum = Values::Zero();
+  /// Estimated error of the sum, without rounding.
+  Values error = Values::Zero();
+  /// Sum of the absolute values of the pieces' integrals: what rounding is relative to.
+  Values magnitude = Values::Zero();
+  /// Points at which the integrand was evaluated.
+  std::int64_t evaluations = 0;
+  /// Pieces given up at the greatest depth.
+  std::int64_t unfinished = 0;
+
+  void add(const Values& value, const Values& estimate) {
+    sum += value;
+    error += estimate;
+    magnitude += value.abs();
+  }
+  void add(const AdaptiveTotals& other) {
+    sum += other.sum;
+    error += other.error;
+    magnitude += other.magnitude;
+    evaluations += other.evaluations;
+    unfinished += other.unfinished;
+  }
+};
+
+/// Orders above this gain less than a bisection does.
+inline constexpr int largest_adaptive_order = 24;
+
+template <PieceEvaluator Evaluator>
+class AdaptiveIntegrator {
+ public:
+  using Piece = typename Evaluator::Piece;
+  using Values = typename Evaluator::Values;
+  static constexpr int directions = Evaluator::directions;
+
+  /// The evaluator outlives the integrator. fixed_points > 0: that rule alone, the estimate from a rule with two more
+  /// points.
+  AdaptiveIntegrator(const Evaluator& evaluator, int fixed_points, int max_depth)
+      : evaluator_(evaluator), fixed_points_(fixed_points), max_depth_(max_depth) {}
+
+  /// One rule of `points` points in each direction over all pieces; no estimate of the error.
+  AdaptiveTotals<Values> apply_rule(std::vector<Piece> pieces, int points) {
+    totals_ = {};
+    work_ = std::move(pieces);
+    std::reverse(work_.begin(), work_.end());
+    Orders<directions> orders;
+    orders.fill(points);
+    std::array<Values, lanes> values;
+    while (!work_.empty()) {
+      const std::vector<Piece> batch = take_batch([](const Piece&) { return true; });
+      evaluate_batch(batch, orders, values);
+      for (std::size_t i = 0; i < batch.size(); ++i) totals_.add(values[i], Values::Zero());
+    }
+    return totals_;
+  }
+
+  /// Integrates over all pieces; the same pieces in the same order give the same bits.
+  AdaptiveTotals<Values> integrate(std::vector<Piece> pieces) {
+    totals_ = {};
+    work_ = std::move(pieces);
+    std::reverse(work_.begin(), work_.end());
+    while (!work_.empty()) next_batch();
+    return totals_;
+  }
+
+ private:
+  static constexpr std::size_t lanes = Evaluator::batch_size;
+
+  /// A piece with the value and estimate of the latest rule.
+  struct State {
+    Piece piece;
+    Orders<directions> orders;
+    Values value;
+    Values difference;
+  };
+
+  static Orders<directions> shifted(Orders<directions> orders, int shift) {
+    for (int& order : orders) order = std::max(1, order + shift);
+    return orders;
+  }
+
+  Orders<directions> orders_for(const Piece& piece) const {
+    if (fixed_points_ == 0) return evaluator_.start_orders(piece);
+    Orders<directions> orders;
+    orders.fill(fixed_points_);
+    return orders;
+  }
+
+  void evaluate(std::span<const Piece* const> batch, const Orders<directions>& orders, std::span<Values> values) {
+    std::int64_t points = static_cast<std::int64_t>(batch.size());
+    for (const int order : orders) points *= order;
+    totals_.evaluations += points;
+    evaluator_.evaluate(batch, orders, values);
+  }
+
+  Values evaluate(const Piece& piece, const Orders<directions>& orders) {
+    const Piece* pointer = &piece;
+    Values value;
+    evaluate({&pointer, 1}, orders, {&value, 1});
+    return value;
+  }
+
+  /// Takes the top piece off the stack, and those below it that are of its kind and fit, as many as there are lanes.
+  template <class Fits>
+  std::vector<Piece> take_batch(Fits fits) {
+    std::vector<Piece> batch;
+    batch.reserve(lanes);
+    do {
+      batch.push_back(std::move(work_.back()));
+      work_.pop_back();
+    } while (batch.size() < lanes && !work_.empty() && evaluator_.same_kind(batch.front(), work_.back()) &&
+             fits(work_.back()));
+    return batch;
+  }
+
+  void evaluate_batch(const std::vector<Piece>& batch, const Orders<directions>& orders, std::span<Values> values) {
+    std::array<const Piece*, lanes> pointers{};
+    for (std::size_t i = 0; i < batch.size(); ++i) pointers[i] = &batch[i];
+    evaluate({pointers.data(), batch.size()}, orders, values.first(batch.size()));
+  }
+
+  void next_batch() {
+    const Orders<directions> orders = orders_for(work_.back());
+    std::vector<Piece> batch = take_batch([&](const Piece& piece) { return orders_for(piece) == orders; });
+    std::array<Values, lanes> values;
+    std::array<Values, lanes> others;
+    evaluate_batch(batch, orders, values);
+    evaluate_batch(batch, shifted(orders, fixed_points_ > 0 ? 2 : -2), others);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      Values difference = (values[i] - others[i]).abs();
+      evaluator_.clear_exact(batch[i], orders, difference);
+      State state{std::move(batch[i]), orders, values[i], difference};
+      if (fixed_points_ > 0 || excess(state, difference) <= 1.0) {
+        totals_.add(state.value, state.difference);
+      } else {
+        refine(std::move(state));
+      }
+    }
+  }
+
+  /// The largest ratio of an estimate to its allowance.
+  double excess(const State& state, const Values& difference) const {
+    return (difference / evaluator_.allowance(state.piece, state.value)).maxCoeff();
+  }
+
+  /// The estimate that belongs to `after`, reached from `before` by raising the order once.
+  static Values enlarged(const Values& before, const Values& after) {
+    Values result = after;
+    for (Eigen::Index k = 0; k < after.size(); ++k) {
+      const double gain = before[k] > 0.0 ? std::min(after[k] / before[k], 0.9) : 0.0;
+      result[k] *= std::max(1.0, gain / (1.0 - gain));
+    }
+    return result;
+  }
+
+  /// Raises the order where the error comes from while that helps; bisects otherwise.
+  void refine(State state) {
+    while (true) {
+      const std::array<double, directions> from = directional_excess(state);
+      const double before = excess(state, state.difference);
+      Orders<directions> raised = state.orders;
+      const double worst = *std::max_element(from.begin(), from.end());
+      for (std::size_t d = 0; d < directions; ++d) {
+        if (from[d] > 0.1 * std::max(worst, 1.0)) raised[d] = std::min(raised[d] + 4, largest_adaptive_order);
+      }
+      if (raised != state.orders) {
+        const Values value = evaluate(state.piece, raised);
+        Values difference = (value - state.value).abs();
+        evaluator_.clear_exact(state.piece, raised, difference);
+        difference = enlarged(state.difference, difference);
+        state = {std::move(state.piece), raised, value, difference};
+        const double after = excess(state, state.difference);
+        if (after <= 1.0) return totals_.add(state.value, state.difference);
+        if (after < 0.03 * before) continue;
+      }
+      return bisect(state, from);
+    }
+  }
+
+  /// How much of the excess each direction alone causes: the order lowered by two there.
+  std::array<double, directions> directional_excess(const State& state) {
+    std::array<double, directions> from;
+    for (std::size_t d = 0; d < directions; ++d) {
+      Orders<directions> lowered = state.orders;
+      lowered[d] = std::max(1, lowered[d] - 2);
+      Values difference = (evaluate(state.piece, lowered) - state.value).abs();
+      evaluator_.clear_exact(state.piece, state.orders, difference);
+      from[d] = excess(state, difference);
+    }
+    return from;
+  }
+
+  void bisect(const State& state, const std::array<double, directions>& from) {
+    if (state.piece.depth >= max_depth_) {
+      ++totals_.unfinished;
+      return totals_.add(state.value, state.difference);
+    }
+    const auto direction = static_cast<int>(std::max_element(from.begin(), from.end()) - from.begin());
+    std::pair<Piece, Piece> halves = evaluator_.split(state.piece, direction);
+    work_.push_back(std::move(halves.second));
+    work_.push_back(std::move(halves.first));
+  }
+
+  const Evaluator& evaluator_;
+  int fixed_points_;
+  int max_depth_;
+  std::vector<Piece> work_;
+  AdaptiveTotals<Values> totals_;
+};
+
+}  // namespace isorim::quadrature

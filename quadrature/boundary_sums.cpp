@@ -1,0 +1,205 @@
+#include "quadrature/boundary_sums.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "quadrature/adaptive.h"
+#include "quadrature/element_piece.h"
+#include "quadrature/parallel.h"
+
+namespace isorim::quadrature {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// Elements that one task integrates: few enough to share out, enough to fill the vector lanes.
+constexpr std::size_t elements_per_task = 64;
+
+/// How large a shape is, from a first pass with a low rule.
+template <int Dim>
+struct Scales {
+  /// Largest distance of a control point from the pole, and largest absolute coordinate.
+  double radius = 0.0;
+  double coordinate = 0.0;
+  ElementSums<Dim> sums = ElementSums<Dim>::Zero();
+  std::size_t elements = 0;
+};
+
+template <int Dim>
+ElementBatch<Dim> batch_of(const ElementPiece<Dim>& first) {
+  ElementBatch<Dim> batch;
+  for (std::size_t d = 0; d < Dim - 1; ++d) batch.degree[d] = first.element->degree[d];
+  batch.polynomial = first.element->polynomial;
+  return batch;
+}
+
+/// The largest power of the distance from the pole in each sum.
+template <int Dim>
+constexpr int power_of_distance(int sum) {
+  using Layout = SumLayout<Dim>;
+  if (sum < Layout::content) return 0;
+  if (sum < Layout::first) return 1;
+  return sum < Layout::second ? 2 : 3;
+}
+
+template <int Dim>
+class SumsEvaluator {
+ public:
+  using Piece = ElementPiece<Dim>;
+  using Values = ElementSums<Dim>;
+  using Layout = SumLayout<Dim>;
+  static constexpr int directions = Dim - 1;
+  static constexpr int batch_size = kernel_lanes;
+
+  SumsEvaluator(const geometry::Point<Dim>& pole, const Scales<Dim>& scales, SumScope scope, double tolerance)
+      : pole_(pole), scales_(scales), tolerance_(tolerance) {
+    target_.fill(std::numeric_limits<double>::max());
+    target_[Layout::measure] = tolerance * scales.sums[Layout::measure];
+    if (scope == SumScope::measure_only) return;
+    const double content = std::abs(scales.sums[Layout::content]);
+    const double second = std::abs(scales.sums.template segment<Dim>(Layout::second).sum());
+    target_.template segment<Dim>(Layout::normal).fill(tolerance * scales.sums[Layout::measure]);
+    target_[Layout::content] = tolerance * content;
+    target_.template segment<Dim>(Layout::first).fill(tolerance * content * scales.radius);
+    target_.template segment<Layout::count - Layout::second>(Layout::second).fill(tolerance * second);
+  }
+
+  Orders<directions> start_orders(const Piece& piece) const { return expected_orders(piece, tolerance_); }
+
+  bool same_kind(const Piece& a, const Piece& b) const {
+    return a.element->degree == b.element->degree && a.element->polynomial == b.element->polynomial;
+  }
+
+  void evaluate(std::span<const Piece* const> pieces, const Orders<directions>& orders,
+                std::span<Values> values) const {
+    ElementBatch<Dim> batch = batch_of(*pieces.front());
+    for (const Piece* piece : pieces) batch.nets[static_cast<std::size_t>(batch.size++)] = piece->net;
+    sum_over_elements(batch, pole_, orders, values.first(pieces.size()));
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      values[i].template tail<Layout::count - 1>() *= pieces[i]->element->orientation;
+    }
+  }
+
+  std::pair<Piece, Piece> split(const Piece& piece, int direction) const { return bisect(piece, direction); }
+
+  /// Half of the target is shared out by measure, half equally among elements and their halves; and a piece may always
+  /// err by rounding.
+  Values allowance(const Piece& piece, const Values& value) const {
+    const double measure = value[Layout::measure];
+    const double share = 0.5 * std::ldexp(1.0 / static_cast<double>(scales_.elements), -piece.depth) +
+                         0.5 * measure / scales_.sums[Layout::measure];
+    Values allowed = target_ * share;
+    for (int k = 0; k < Layout::count; ++k) {
+      const double rounding = 4.0 * epsilon * measure * std::pow(scales_.radius, power_of_distance<Dim>(k));
+      allowed[k] = std::max({allowed[k], rounding, std::numeric_limits<double>::min()});
+    }
+    return allowed;
+  }
+
+  void clear_exact(const Piece& piece, const Orders<directions>& orders, Values& difference) const {
+    if (!piece.element->polynomial) return;
+    for (std::size_t d = 0; d < directions; ++d) {
+      if (orders[d] < exact_order<Dim>(piece.element->degree[d])) return;
+    }
+    difference.template tail<Layout::count - 1>().setZero();
+  }
+
+ private:
+  geometry::Point<Dim> pole_;
+  const Scales<Dim>& scales_;
+  double tolerance_;
+  Values target_;
+};
+
+/// body(range, task) over the elements in ranges of elements_per_task, the tasks' totals added in order.
+template <int Dim, class Body>
+AdaptiveTotals<ElementSums<Dim>> sum_in_tasks(const geometry::ElementTable<Dim>& table, const Options& options,
+                                              const std::function<void(double)>& progress, Body body) {
+  const std::span<const geometry::BezierElement<Dim>> elements(table.elements);
+  const std::size_t tasks = (elements.size() + elements_per_task - 1) / elements_per_task;
+  std::vector<AdaptiveTotals<ElementSums<Dim>>> totals(tasks);
+  const auto run = [&](std::size_t task, int) {
+    const std::size_t begin = task * elements_per_task;
+    totals[task] = body(elements.subspan(begin, std::min(elements_per_task, elements.size() - begin)));
+  };
+  parallel_for(tasks, options.threads, run, progress);
+  // Pairwise, so that rounding grows with the logarithm of the number of tasks.
+  for (std::size_t step = 1; step < tasks; step *= 2) {
+    for (std::size_t i = 0; i + step < tasks; i += 2 * step) totals[i].add(totals[i + step]);
+  }
+  return tasks > 0 ? totals.front() : AdaptiveTotals<ElementSums<Dim>>{};
+}
+
+template <int Dim>
+std::vector<ElementPiece<Dim>> pieces_of(const geometry::ElementTable<Dim>& table,
+                                         std::span<const geometry::BezierElement<Dim>> elements) {
+  std::vector<ElementPiece<Dim>> pieces;
+  pieces.reserve(elements.size());
+  for (const geometry::BezierElement<Dim>& element : elements) pieces.push_back(whole_element(table, element));
+  return pieces;
+}
+
+template <int Dim>
+Scales<Dim> measure_scales(const geometry::ElementTable<Dim>& table, const geometry::Point<Dim>& pole,
+                           const Options& options) {
+  Scales<Dim> scales;
+  const geometry::BoundingBox<Dim> box = geometry::bounding_box(table);
+  scales.radius = (box.lower - pole).cwiseAbs().cwiseMax((box.upper - pole).cwiseAbs()).norm();
+  scales.coordinate = std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
+  scales.elements = table.elements.size();
+  const SumsEvaluator<Dim> evaluator(pole, scales, SumScope::measure_only, options.tolerance);
+  constexpr int low_order = 3;
+  const auto body = [&](std::span<const geometry::BezierElement<Dim>> elements) {
+    return AdaptiveIntegrator(evaluator, 0, 0).apply_rule(pieces_of(table, elements), low_order);
+  };
+  scales.sums = sum_in_tasks(table, options, {}, body).sum;
+  return scales;
+}
+
+/// What rounding may cost: of the sums themselves, and of positions that are stored to a relative epsilon.
+template <int Dim>
+ElementSums<Dim> rounding_error(const Scales<Dim>& scales, const AdaptiveTotals<ElementSums<Dim>>& totals) {
+  ElementSums<Dim> error = 2.0 * epsilon * totals.magnitude;
+  const double position = epsilon * scales.coordinate * totals.sum[SumLayout<Dim>::measure];
+  for (int k = SumLayout<Dim>::content; k < SumLayout<Dim>::count; ++k) {
+    error[k] += position * std::pow(scales.radius, power_of_distance<Dim>(k) - 1);
+  }
+  return error;
+}
+
+}  // namespace
+
+template <int Dim>
+BoundarySums<Dim> boundary_sums(const geometry::ElementTable<Dim>& table, const geometry::Point<Dim>& pole,
+                                SumScope scope, const Options& options) {
+  using Layout = SumLayout<Dim>;
+  Scales<Dim> scales = measure_scales(table, pole, options);
+  AdaptiveTotals<ElementSums<Dim>> totals;
+  // The first pass may overrate the content of a thin body: then its sums were a tolerance for the wrong body.
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    const SumsEvaluator<Dim> evaluator(pole, scales, scope, options.tolerance);
+    const auto body = [&](std::span<const geometry::BezierElement<Dim>> elements) {
+      return AdaptiveIntegrator(evaluator, options.fixed_points, options.max_depth)
+          .integrate(pieces_of(table, elements));
+    };
+    totals = sum_in_tasks(table, options, options.progress, body);
+    const double aimed_at = std::abs(scales.sums[Layout::content]);
+    scales.sums = totals.sum;
+    if (options.fixed_points > 0 || std::abs(totals.sum[Layout::content]) > 0.5 * aimed_at) break;
+  }
+  const bool exact = std::all_of(table.elements.begin(), table.elements.end(),
+                                 [](const geometry::BezierElement<Dim>& element) { return element.polynomial; });
+  return {totals.sum, totals.error + rounding_error(scales, totals), totals.evaluations,
+          exact && options.fixed_points == 0};
+}
+
+template BoundarySums<2> boundary_sums(const geometry::ElementTable<2>&, const geometry::Point<2>&, SumScope,
+                                       const Options&);
+template BoundarySums<3> boundary_sums(const geometry::ElementTable<3>&, const geometry::Point<3>&, SumScope,
+                                       const Options&);
+
+}  // namespace isorim::quadrature

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/bezier/element_table.h"
+#include "geometry/vocabulary.h"
+#include "quadrature/element_sums.h"
+#include "quadrature/estimate.h"
+#include "quadrature/options.h"
+
+namespace isorim::quadrature {
+
+/// The sums of SumLayout over a whole boundary, with respect to its outward normal.
+template <int Dim>
+struct BoundarySums {
+  ElementSums<Dim> value;
+  /// Estimated absolute error of each, rounding included.
+  ElementSums<Dim> error;
+  /// Points of the boundary at which position and tangents were evaluated.
+  std::int64_t evaluations = 0;
+  /// Every element is polynomial, so all sums but the measure are exact up to rounding.
+  bool exact = false;
+};
+
+/// Which sums the tolerance of Options is aimed at. The rest is computed all the same.
+enum class SumScope { measure_only, all };
+
+/// Adaptive, in parallel, the same bits for any number of threads. The tolerance is relative to: the measure; the
+/// content; the content times the size (first moments); the second moments' trace, all about the pole.
+template <int Dim>
+BoundarySums<Dim> boundary_sums(const geometry::ElementTable<Dim>& table, const geometry::Point<Dim>& pole,
+                                SumScope scope, const Options& options);
+
+}  // namespace isorim::quadrature

@@ -1,0 +1,85 @@
+#include "quadrature/element_piece.h"
+
+#include <algorithm>
+
+#include "geometry/bezier/subdivision.h"
+#include "quadrature/adaptive.h"
+
+namespace isorim::quadrature {
+
+namespace {
+
+template <int Dim>
+std::array<int, Dim - 1> degrees_of(const geometry::BezierElement<Dim>& element) {
+  std::array<int, Dim - 1> degrees;
+  std::copy(element.degree.begin(), element.degree.end(), degrees.begin());
+  return degrees;
+}
+
+/// The largest ratio of two weights on one line of the net that runs in the direction.
+template <int Dim>
+double weight_ratio(const ElementPiece<Dim>& piece, int direction) {
+  const std::array<int, Dim - 1> degrees = degrees_of(*piece.element);
+  const int points = degrees[static_cast<std::size_t>(direction)] + 1;
+  const int stride = direction == 0 ? 1 : degrees[0] + 1;
+  const int lines = piece.element->control_point_count() / points;
+  double ratio = 1.0;
+  for (int line = 0; line < lines; ++line) {
+    const int start = direction == 0 ? line * points : line;
+    double smallest = piece.net[start * (Dim + 1) + Dim];
+    double largest = smallest;
+    for (int i = 1; i < points; ++i) {
+      const double weight = piece.net[(start + i * stride) * (Dim + 1) + Dim];
+      smallest = std::min(smallest, weight);
+      largest = std::max(largest, weight);
+    }
+    ratio = std::max(ratio, largest / smallest);
+  }
+  return ratio;
+}
+
+/// Gauss-Legendre with n points errs like rho^(-2 n), rho the sum of the semi-axes of the largest ellipse with foci
+/// at the ends in which the integrand is analytic (Trefethen, SIAM Rev. 50, 2008, theorem 4.5). A quadratic weight
+/// function 1, w, 1 on [-1, 1] vanishes at +-i sqrt((1 + w) / (1 - w)).
+int rational_order(double ratio, int degree, double tolerance) {
+  const double pole = std::sqrt((ratio + 1.0) / (ratio - 1.0));
+  const double rho = pole + std::sqrt(pole * pole + 1.0);
+  const double points = std::log(1.0 / std::max(tolerance, 1e-16)) / (2.0 * std::log(rho));
+  // The numerators' degree and the repeated pole cost a few points on top.
+  return std::min(static_cast<int>(std::ceil(points)) + 2 * degree + 1, largest_adaptive_order);
+}
+
+}  // namespace
+
+template <int Dim>
+std::pair<ElementPiece<Dim>, ElementPiece<Dim>> bisect(const ElementPiece<Dim>& piece, int direction) {
+  const std::array<int, Dim - 1> degrees = degrees_of(*piece.element);
+  const auto size = static_cast<std::size_t>(piece.element->control_point_count() * (Dim + 1));
+  auto [first, second] = geometry::subdivide({piece.net, size}, Dim + 1, degrees, direction);
+  const auto make = [&](std::vector<double> net) {
+    ElementPiece<Dim> half{piece.element, nullptr, piece.element_depth + 1, piece.depth + 1, std::move(net)};
+    half.net = half.own_net.data();
+    return half;
+  };
+  return {make(std::move(first)), make(std::move(second))};
+}
+
+template <int Dim>
+Orders<Dim - 1> expected_orders(const ElementPiece<Dim>& piece, double tolerance) {
+  constexpr double constant_weights = 1.0 + 1e-14;
+  Orders<Dim - 1> orders;
+  for (int d = 0; d < Dim - 1; ++d) {
+    const int degree = piece.element->degree[static_cast<std::size_t>(d)];
+    const double ratio = piece.element->polynomial ? 1.0 : weight_ratio(piece, d);
+    orders[static_cast<std::size_t>(d)] =
+        ratio <= constant_weights ? exact_order<Dim>(degree) : rational_order(ratio, degree, tolerance);
+  }
+  return orders;
+}
+
+template std::pair<ElementPiece<2>, ElementPiece<2>> bisect(const ElementPiece<2>&, int);
+template std::pair<ElementPiece<3>, ElementPiece<3>> bisect(const ElementPiece<3>&, int);
+template Orders<1> expected_orders(const ElementPiece<2>&, double);
+template Orders<2> expected_orders(const ElementPiece<3>&, double);
+
+}  // namespace isorim::quadrature

@@ -1,0 +1,337 @@
+#include "quadrature/rim.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "geometry/errors.h"
+#include "quadrature/adaptive.h"
+#include "quadrature/element_piece.h"
+#include "quadrature/gauss_legendre.h"
+#include "quadrature/parallel.h"
+#include "quadrature/piece_samples.h"
+
+namespace isorim::quadrature {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// The integral and the integral of the absolute value, which tells how much cancels.
+using Values = Eigen::Array<double, 2, 1>;
+constexpr int signed_value = 0;
+constexpr int absolute_value = 1;
+
+/// Integrands are functions of which nothing is known: no direction starts below this.
+constexpr int least_order_for_functions = 8;
+
+/// Of the first pass, which tells how large the integral is.
+constexpr int low_order = 4;
+
+/// What the tolerance is relative to: the integral, or a thousandth of the integral of |f| where it nearly vanishes.
+double reference_size(const Values& sum) {
+  return std::max(std::abs(sum[signed_value]), 1e-3 * sum[absolute_value]);
+}
+
+template <int Dim>
+std::string describe(const geometry::Point<Dim>& x) {
+  std::string text = fmt::format("({:.6g}, {:.6g}", x[0], x[1]);
+  for (int i = 2; i < Dim; ++i) text += fmt::format(", {:.6g}", x[i]);
+  return text + ")";
+}
+
+/// What evaluators of either kind of integral share: the call of the integrand and the sharing out of the tolerance.
+template <int Dim>
+class IntegrandCall {
+ public:
+  IntegrandCall(const Integrand<Dim>& integrand, double target) : integrand_(integrand), target_(target) {}
+
+  /// Sum of weights[i] f(points_i), and of its absolute values. Throws NumericalError at a value that is not finite.
+  Values weighted_sum(const geometry::Points<Dim>& points, const geometry::Points<Dim>& normals,
+                      std::span<const double> weights) const {
+    static thread_local std::vector<double> values;
+    values.resize(weights.size());
+    integrand_(points, normals, values);
+    Values sum = Values::Zero();
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (!std::isfinite(values[i])) {
+        const geometry::Point<Dim> where = points.col(static_cast<Eigen::Index>(i));
+        throw NumericalError(fmt::format("the integrand is {} at {}", values[i], describe<Dim>(where)));
+      }
+      sum[signed_value] += weights[i] * values[i];
+      sum[absolute_value] += std::abs(weights[i] * values[i]);
+    }
+    return sum;
+  }
+
+  Values allowance(double share, const Values& value) const {
+    Values allowed;
+    allowed[signed_value] =
+        std::max({target_ * share, 8.0 * epsilon * value[absolute_value], std::numeric_limits<double>::min()});
+    allowed[absolute_value] = std::numeric_limits<double>::max();
+    return allowed;
+  }
+
+ private:
+  const Integrand<Dim>& integrand_;
+  double target_;
+};
+
+/// The order to begin with: what the element's map needs for the moments (the integrand adds to it, but seldom more
+/// than the error estimate then asks for).
+template <int Dim, std::size_t Directions>
+void set_element_orders(const ElementPiece<Dim>& piece, double tolerance, std::array<int, Directions>& orders) {
+  const Orders<Dim - 1> expected = expected_orders(piece, tolerance);
+  for (std::size_t d = 0; d < Dim - 1; ++d) {
+    orders[d] = std::max(std::min(expected[d] + 1, largest_adaptive_order), least_order_for_functions);
+  }
+}
+
+/// int f dS over pieces of the boundary.
+template <int Dim>
+class BoundaryEvaluator {
+ public:
+  using Piece = ElementPiece<Dim>;
+  using Values = quadrature::Values;
+  static constexpr int directions = Dim - 1;
+  static constexpr int batch_size = 1;
+
+  BoundaryEvaluator(const Integrand<Dim>& integrand, const geometry::Point<Dim>&, std::size_t elements, double target,
+                    double tolerance)
+      : call_(integrand, target), elements_(elements), tolerance_(tolerance) {}
+
+  static Piece make_piece(ElementPiece<Dim> piece) { return piece; }
+
+  Orders<directions> start_orders(const Piece& piece) const {
+    Orders<directions> orders;
+    set_element_orders(piece, tolerance_, orders);
+    return orders;
+  }
+  bool same_kind(const Piece&, const Piece&) const { return false; }
+
+  void evaluate(std::span<const Piece* const> pieces, const Orders<directions>& orders,
+                std::span<Values> values) const {
+    static thread_local PieceSamples<Dim> samples;
+    static thread_local std::vector<double> weights;
+    sample_piece(*pieces.front(), orders, samples);
+    weights.resize(static_cast<std::size_t>(samples.normals.cols()));
+    for (Eigen::Index i = 0; i < samples.normals.cols(); ++i) {
+      const double measure = samples.normals.col(i).norm();
+      weights[static_cast<std::size_t>(i)] = measure;
+      if (measure > 0.0) samples.normals.col(i) /= measure;
+    }
+    values.front() = call_.weighted_sum(samples.points, samples.normals, weights);
+  }
+
+  std::pair<Piece, Piece> split(const Piece& piece, int direction) const { return bisect(piece, direction); }
+
+  Values allowance(const Piece& piece, const Values& value) const {
+    return call_.allowance(std::ldexp(1.0 / static_cast<double>(elements_), -piece.depth), value);
+  }
+  void clear_exact(const Piece&, const Orders<directions>&, Values&) const {}
+
+ private:
+  IntegrandCall<Dim> call_;
+  std::size_t elements_;
+  double tolerance_;
+};
+
+/// A frustum of the cone from the pole over a piece of the boundary: the rays' part t in `radial`.
+template <int Dim>
+struct ConePiece : ElementPiece<Dim> {
+  geometry::Interval radial;
+};
+
+/// int_Omega f over cones: the element's directions and, last, the direction of the rays.
+template <int Dim>
+class ConeEvaluator {
+ public:
+  using Piece = ConePiece<Dim>;
+  using Values = quadrature::Values;
+  static constexpr int directions = Dim;
+  static constexpr int batch_size = 1;
+
+  ConeEvaluator(const Integrand<Dim>& integrand, const geometry::Point<Dim>& pole, std::size_t elements, double target,
+                double tolerance)
+      : call_(integrand, target), pole_(pole), elements_(elements), tolerance_(tolerance) {}
+
+  static Piece make_piece(ElementPiece<Dim> piece) { return {std::move(piece), {0.0, 1.0}}; }
+
+  Orders<directions> start_orders(const Piece& piece) const {
+    Orders<directions> orders;
+    set_element_orders(piece, tolerance_, orders);
+    orders[Dim - 1] = least_order_for_functions;
+    return orders;
+  }
+  bool same_kind(const Piece&, const Piece&) const { return false; }
+
+  void evaluate(std::span<const Piece* const> pieces, const Orders<directions>& orders,
+                std::span<Values> values) const {
+    static thread_local PieceSamples<Dim> samples;
+    static thread_local geometry::Points<Dim> points;
+    static thread_local std::vector<double> weights;
+    const Piece& piece = *pieces.front();
+    Orders<Dim - 1> element_orders;
+    std::copy_n(orders.begin(), Dim - 1, element_orders.begin());
+    sample_piece<Dim>(piece, element_orders, samples);
+    const Rule& rule = gauss_legendre(orders[Dim - 1]);
+    const Eigen::Index rays = samples.points.cols();
+    points.resize(Dim, rays * rule.size());
+    weights.resize(static_cast<std::size_t>(points.cols()));
+    for (int k = 0; k < rule.size(); ++k) {
+      const auto node = static_cast<std::size_t>(k);
+      const double t = piece.radial.first + rule.nodes[node] * piece.radial.length();
+      const double radial_weight = rule.weights[node] * piece.radial.length() * std::pow(t, Dim - 1);
+      for (Eigen::Index i = 0; i < rays; ++i) {
+        const geometry::Vector<Dim> d = samples.points.col(i) - pole_;
+        points.col(k * rays + i) = pole_ + t * d;
+        weights[static_cast<std::size_t>(k * rays + i)] = radial_weight * d.dot(samples.normals.col(i));
+      }
+    }
+    static const geometry::Points<Dim> no_normals(Dim, 0);
+    values.front() = call_.weighted_sum(points, no_normals, weights);
+  }
+
+  std::pair<Piece, Piece> split(const Piece& piece, int direction) const {
+    if (direction < Dim - 1) {
+      auto [first, second] = bisect<Dim>(piece, direction);
+      return {{std::move(first), piece.radial}, {std::move(second), piece.radial}};
+    }
+    std::pair<Piece, Piece> halves{copy(piece), copy(piece)};
+    halves.first.radial.last = halves.second.radial.first = piece.radial.middle();
+    return halves;
+  }
+
+  Values allowance(const Piece& piece, const Values& value) const {
+    return call_.allowance(std::ldexp(1.0 / static_cast<double>(elements_), -piece.depth), value);
+  }
+  void clear_exact(const Piece&, const Orders<directions>&, Values&) const {}
+
+ private:
+  /// The same cone, one level deeper, with a net of its own if it has one.
+  static Piece copy(const Piece& piece) {
+    Piece result = piece;
+    if (!result.own_net.empty()) result.net = result.own_net.data();
+    ++result.depth;
+    return result;
+  }
+
+  IntegrandCall<Dim> call_;
+  geometry::Point<Dim> pole_;
+  std::size_t elements_;
+  double tolerance_;
+};
+
+/// Integrals over the elements, a few in a task (an integrand costs far more than the geometry).
+template <int Dim, template <int> class Evaluator>
+class Integration {
+ public:
+  Integration(const geometry::ElementTable<Dim>& table, const IntegrandFactory<Dim>& factory,
+              const geometry::Point<Dim>& pole, const Options& options)
+      : table_(table), factory_(factory), pole_(pole), options_(options) {
+    integrands_.resize(static_cast<std::size_t>(thread_count(options.threads)));
+  }
+
+  IntegralResult run() {
+    Values reference = in_tasks(0.0, {}, [](auto& integrator, auto pieces) {
+                         return integrator.apply_rule(std::move(pieces), low_order);
+                       }).sum;
+    AdaptiveTotals<Values> totals;
+    // The first pass may overrate an integral in which much cancels; then the target was too wide.
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      const double aimed_at = reference_size(reference);
+      totals = in_tasks(options_.tolerance * aimed_at, options_.progress,
+                        [](auto& integrator, auto pieces) { return integrator.integrate(std::move(pieces)); });
+      reference = totals.sum;
+      if (options_.fixed_points > 0 || reference_size(reference) > 0.5 * aimed_at) break;
+    }
+    return result(totals);
+  }
+
+ private:
+  static constexpr std::size_t elements_per_task = 4;
+
+  IntegralResult result(const AdaptiveTotals<Values>& totals) const {
+    const double rounding = 4.0 * epsilon * totals.sum[absolute_value];
+    IntegralResult result{{totals.sum[signed_value], totals.error[signed_value] + rounding}, totals.evaluations, {}};
+    if (options_.fixed_points > 0) {
+      result.status = Status::fixed_rule;
+    } else {
+      const double allowed = options_.tolerance * reference_size(totals.sum) + rounding;
+      result.status = result.integral.error <= allowed ? Status::converged : Status::tolerance_not_reached;
+    }
+    return result;
+  }
+
+  const Integrand<Dim>& integrand_of(int thread) {
+    Integrand<Dim>& integrand = integrands_[static_cast<std::size_t>(thread)];
+    if (!integrand) integrand = factory_();
+    return integrand;
+  }
+
+  template <class Step>
+  AdaptiveTotals<Values> in_tasks(double target, const std::function<void(double)>& progress, Step step) {
+    const std::size_t count = table_.elements.size();
+    const std::size_t tasks = (count + elements_per_task - 1) / elements_per_task;
+    std::vector<AdaptiveTotals<Values>> totals(tasks);
+    const auto body = [&](std::size_t task, int thread) {
+      const Evaluator<Dim> evaluator(integrand_of(thread), pole_, count, target, options_.tolerance);
+      std::vector<typename Evaluator<Dim>::Piece> pieces;
+      for (std::size_t e = task * elements_per_task; e < std::min(count, (task + 1) * elements_per_task); ++e) {
+        pieces.push_back(Evaluator<Dim>::make_piece(whole_element(table_, table_.elements[e])));
+      }
+      AdaptiveIntegrator<Evaluator<Dim>> integrator(evaluator, options_.fixed_points, options_.max_depth);
+      totals[task] = step(integrator, std::move(pieces));
+    };
+    parallel_for(tasks, options_.threads, body, progress);
+    AdaptiveTotals<Values> sum;
+    for (const AdaptiveTotals<Values>& part : totals) sum.add(part);
+    return sum;
+  }
+
+  const geometry::ElementTable<Dim>& table_;
+  const IntegrandFactory<Dim>& factory_;
+  geometry::Point<Dim> pole_;
+  const Options& options_;
+  std::vector<Integrand<Dim>> integrands_;
+};
+
+}  // namespace
+
+template <int Dim>
+IntegralResult integrate_over_domain(const geometry::ElementTable<Dim>& table, const IntegrandFactory<Dim>& integrand,
+                                     const std::optional<geometry::Point<Dim>>& pole, const Options& options) {
+  const geometry::Point<Dim> centre = pole ? *pole : default_pole(table);
+  try {
+    return Integration<Dim, ConeEvaluator>(table, integrand, centre, options).run();
+  } catch (NumericalError& error) {
+    const std::string where = is_star_shaped_about(table, centre)
+                                  ? "the domain is star-shaped about it, so the point lies in the domain"
+                                  : "the domain is not star-shaped about it, so the point may lie outside the domain, "
+                                    "where the integrand must be defined too; another pole may help";
+    error.add_context(fmt::format("on a ray from the pole {} ({})", describe<Dim>(centre), where));
+    throw;
+  }
+}
+
+template <int Dim>
+IntegralResult integrate_over_boundary(const geometry::ElementTable<Dim>& table, const IntegrandFactory<Dim>& integrand,
+                                       const Options& options) {
+  return Integration<Dim, BoundaryEvaluator>(table, integrand, geometry::Point<Dim>::Zero(), options).run();
+}
+
+template IntegralResult integrate_over_domain<2>(const geometry::ElementTable<2>&, const IntegrandFactory<2>&,
+                                                 const std::optional<geometry::Point<2>>&, const Options&);
+template IntegralResult integrate_over_domain<3>(const geometry::ElementTable<3>&, const IntegrandFactory<3>&,
+                                                 const std::optional<geometry::Point<3>>&, const Options&);
+template IntegralResult integrate_over_boundary<2>(const geometry::ElementTable<2>&, const IntegrandFactory<2>&,
+                                                   const Options&);
+template IntegralResult integrate_over_boundary<3>(const geometry::ElementTable<3>&, const IntegrandFactory<3>&,
+                                                   const Options&);
+
+}  // namespace isorim::quadrature
