@@ -36,7 +36,8 @@ struct Value {
   /// In the order of the file.
   using Table = std::vector<TableEntry>;
 
-  std::variant<bool, std::int64_t, double, std::string, DateOrTime, Array, Table> data = false;
+  /// A new value is false. An initialiser that says so would make clang ask for TableEntry's size here.
+  std::variant<bool, std::int64_t, double, std::string, DateOrTime, Array, Table> data;
   Place place;
 
   template <class T>
