@@ -66,4 +66,9 @@ struct OrientedBoundary {
 template <int Dim>
 OrientedBoundary<Dim> orient(const Boundary<Dim>& boundary, const OrientationOptions& options = {});
 
+/// Returns if the boundary is closed; throws GeometryError otherwise, which names up to five free ends (Dim = 2) or
+/// stretches of edges (Dim = 3) with their places, and for each the nearest other one and the size of the gap.
+template <int Dim>
+void require_closed(const OrientedBoundary<Dim>& oriented);
+
 }  // namespace isorim::geometry

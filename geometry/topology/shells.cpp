@@ -1,0 +1,215 @@
+// orient() in space: shells of patches joined along edges, consistent normals, voids.
+
+#include <algorithm>
+#include <optional>
+#include <queue>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geometry/bezier/element_table.h"
+#include "geometry/errors.h"
+#include "geometry/topology/edge_matching.h"
+#include "geometry/topology/enclosed_volume.h"
+#include "geometry/topology/orientation.h"
+
+namespace isorim::geometry {
+namespace {
+
+std::string at(const Point3& point) {
+  return fmt::format("({:.9g}, {:.9g}, {:.9g})", point.x(), point.y(), point.z());
+}
+
+/// A neighbour across an edge; relation +1 if both natural normals agree there.
+struct Neighbour {
+  int patch = 0;
+  int relation = 1;
+  int joint = 0;
+};
+
+class ShellFinder {
+ public:
+  ShellFinder(const Boundary<3>& boundary, const EdgeMatching& matching) : boundary_(boundary), matching_(matching) {
+    neighbours_.resize(boundary.patches.size());
+    for (std::size_t i = 0; i < matching.joints.size(); ++i) add_joint(static_cast<int>(i));
+    has_free_edge_.resize(boundary.patches.size(), false);
+    for (const int piece : matching.free_pieces) has_free_edge_[static_cast<std::size_t>(edge_of(piece).patch)] = true;
+  }
+
+  /// Shells in the order of their first patches; `signs` are consistent within each.
+  std::vector<Shell<3>> find(std::vector<int>& signs) const {
+    signs.assign(boundary_.patches.size(), 0);
+    std::vector<Shell<3>> shells;
+    for (std::size_t i = 0; i < signs.size(); ++i) {
+      if (signs[i] == 0) shells.push_back(spread_from(static_cast<int>(i), signs));
+    }
+    return shells;
+  }
+
+ private:
+  const SurfaceEdge& edge_of(int piece) const {
+    return matching_.edges[static_cast<std::size_t>(matching_.pieces[static_cast<std::size_t>(piece)].edge)];
+  }
+  const std::string& name(int patch) const { return boundary_.patches[static_cast<std::size_t>(patch)].name; }
+
+  void add_joint(int index) {
+    const EdgeJoint& joint = matching_.joints[static_cast<std::size_t>(index)];
+    const SurfaceEdge& a = edge_of(joint.first);
+    const SurfaceEdge& b = edge_of(joint.second);
+    // Consistent neighbours run through their common edge in opposite directions.
+    const int relation = -a.direction * b.direction * (joint.same_direction ? 1 : -1);
+    neighbours_[static_cast<std::size_t>(a.patch)].push_back({b.patch, relation, index});
+    neighbours_[static_cast<std::size_t>(b.patch)].push_back({a.patch, relation, index});
+  }
+
+  Shell<3> spread_from(int first, std::vector<int>& signs) const {
+    Shell<3> shell;
+    shell.closed = true;
+    std::queue<int> waiting;
+    signs[static_cast<std::size_t>(first)] = 1;
+    waiting.push(first);
+    while (!waiting.empty()) {
+      const int patch = waiting.front();
+      waiting.pop();
+      shell.patches.push_back(patch);
+      shell.closed = shell.closed && !has_free_edge_[static_cast<std::size_t>(patch)];
+      for (const Neighbour& next : neighbours_[static_cast<std::size_t>(patch)]) {
+        int& sign = signs[static_cast<std::size_t>(next.patch)];
+        const int wanted = signs[static_cast<std::size_t>(patch)] * next.relation;
+        if (sign == 0) waiting.push(next.patch);
+        if (sign == -wanted) refuse_one_sided(patch, next);
+        sign = wanted;
+      }
+    }
+    std::ranges::sort(shell.patches);
+    return shell;
+  }
+
+  [[noreturn]] void refuse_one_sided(int patch, const Neighbour& next) const {
+    const EdgePiece& piece =
+        matching_.pieces[static_cast<std::size_t>(matching_.joints[static_cast<std::size_t>(next.joint)].first)];
+    const Point3 place = evaluate(matching_.edges[static_cast<std::size_t>(piece.edge)].curve, piece.domain.middle());
+    throw GeometryError(
+        patch == next.patch
+            ? fmt::format("patch '{}' meets itself at {} with its normal reversed: the shell has one side only "
+                          "(a Moebius strip)",
+                          name(patch), at(place))
+            : fmt::format("the shell cannot be oriented: going round it, the normals of patches '{}' and '{}' disagree "
+                          "at their common edge at {} (a Moebius strip)",
+                          name(patch), name(next.patch), at(place)));
+  }
+
+  const Boundary<3>& boundary_;
+  const EdgeMatching& matching_;
+  std::vector<std::vector<Neighbour>> neighbours_;
+  std::vector<bool> has_free_edge_;
+};
+
+/// A closed shell as Bézier pieces with consistent orientations.
+struct ClosedShell {
+  std::size_t index = 0;
+  std::vector<SurfacePiece> pieces;
+  Point3 lower;
+  Point3 upper;
+};
+
+std::vector<ClosedShell> closed_shells(const ElementTable<3>& table, const std::vector<Shell<3>>& shells,
+                                       const std::vector<int>& signs) {
+  std::vector<int> slot_of_patch(signs.size(), -1);
+  std::vector<ClosedShell> closed;
+  for (std::size_t i = 0; i < shells.size(); ++i) {
+    if (!shells[i].closed) continue;
+    for (const int patch : shells[i].patches) {
+      slot_of_patch[static_cast<std::size_t>(patch)] = static_cast<int>(closed.size());
+    }
+    closed.push_back({i, {}, Point3::Zero(), Point3::Zero()});
+  }
+  for (const BezierElement<3>& element : table.elements) {
+    const std::size_t patch = static_cast<std::size_t>(element.patch);
+    if (slot_of_patch[patch] < 0) continue;
+    closed[static_cast<std::size_t>(slot_of_patch[patch])].pieces.emplace_back(
+        table.net_matrix(element), element.degree[0], element.degree[1], signs[patch]);
+  }
+  for (ClosedShell& shell : closed) {
+    shell.lower = shell.pieces.front().lower;
+    shell.upper = shell.pieces.front().upper;
+    for (const SurfacePiece& piece : shell.pieces) {
+      shell.lower = shell.lower.cwiseMin(piece.lower);
+      shell.upper = shell.upper.cwiseMax(piece.upper);
+    }
+  }
+  return closed;
+}
+
+/// Shells do not cross, so any point of `inner` away from `outer` decides.
+bool is_inside(const ClosedShell& inner, const ClosedShell& outer, double tolerance) {
+  const bool box_inside = (inner.lower.array() >= outer.lower.array() - tolerance).all() &&
+                          (inner.upper.array() <= outer.upper.array() + tolerance).all();
+  if (!box_inside) return false;
+  constexpr std::size_t most = 64;
+  const std::size_t step = std::max<std::size_t>(1, inner.pieces.size() / most);
+  for (std::size_t i = 0; i < inner.pieces.size(); i += step) {
+    // Off the middle, so that shells that touch at regular places are not probed there.
+    const Point3 point = evaluate(inner.pieces[i], 0.4142, 0.5858);
+    if (const std::optional<int> turns = winding_number(outer.pieces, point, tolerance)) return *turns != 0;
+  }
+  throw GeometryError(fmt::format("two shells coincide near {}", at(inner.pieces.front().corner(0, 0))));
+}
+
+/// Turns the signs of every closed shell so that its normals point out of the material; odd depth is a void.
+void turn_outward(const Boundary<3>& boundary, const ElementTable<3>& table, Topology<3>& topology,
+                  std::vector<int>& signs) {
+  const std::vector<ClosedShell> closed = closed_shells(table, topology.shells, signs);
+  for (const ClosedShell& shell : closed) {
+    Shell<3>& own = topology.shells[shell.index];
+    const std::optional<int> sign = volume_sign(shell.pieces, 0.5 * topology.tolerance);
+    if (!sign) {
+      throw GeometryError(fmt::format("the closed shell of patch '{}'{} encloses no volume (at {})",
+                                      boundary.patches[static_cast<std::size_t>(own.patches.front())].name,
+                                      own.patches.size() > 1 ? fmt::format(" and {} more", own.patches.size() - 1) : "",
+                                      at(shell.pieces.front().corner(0, 0))));
+    }
+    const auto contains = [&](const ClosedShell& other) {
+      return &other != &shell && is_inside(shell, other, topology.tolerance);
+    };
+    own.is_void = std::ranges::count_if(closed, contains) % 2 != 0;
+    const int turn = own.is_void ? -*sign : *sign;
+    for (const int patch : own.patches) signs[static_cast<std::size_t>(patch)] *= turn;
+  }
+}
+
+std::vector<FreeEdge<3>> free_edges(const EdgeMatching& matching) {
+  std::vector<FreeEdge<3>> result;
+  for (const int index : matching.free_pieces) {
+    const EdgePiece& piece = matching.pieces[static_cast<std::size_t>(index)];
+    const SurfaceEdge& edge = matching.edges[static_cast<std::size_t>(piece.edge)];
+    result.push_back(
+        {edge.patch, edge.side, evaluate(edge.curve, piece.domain.first), evaluate(edge.curve, piece.domain.last)});
+  }
+  return result;
+}
+
+}  // namespace
+
+template <>
+OrientedBoundary<3> orient<3>(const Boundary<3>& boundary, const OrientationOptions& options) {
+  if (boundary.patches.empty()) throw GeometryError("the boundary has no patches");
+  const ElementTable<3> table = bezier_elements(boundary);
+  OrientedBoundary<3> result{boundary, {}};
+  Topology<3>& topology = result.topology;
+  topology.tolerance = options.tolerance * bounding_box(table).diagonal();
+  if (topology.tolerance == 0.0) throw GeometryError("all points of the boundary coincide");
+
+  const EdgeMatching matching = match_edges(boundary, topology.tolerance);
+  topology.largest_gap = matching.largest_gap;
+  topology.free_edges = free_edges(matching);
+  std::vector<int> signs;
+  topology.shells = ShellFinder(boundary, matching).find(signs);
+  turn_outward(boundary, table, topology, signs);
+  topology.closed = std::ranges::all_of(topology.shells, [](const Shell<3>& shell) { return shell.closed; });
+  for (std::size_t i = 0; i < signs.size(); ++i) result.boundary.patches[i].orientation = signs[i];
+  return result;
+}
+
+}  // namespace isorim::geometry
