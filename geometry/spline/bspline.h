@@ -27,6 +27,10 @@ Eigen::MatrixXd basis_derivatives(const KnotVector& knots, int span, double u, i
 /// from the right, at the domain's end from the left.
 Eigen::MatrixXd evaluate_derivatives(const BSpline& spline, double u, int orders);
 
+/// The value at u by de Boor's corner cutting: k. Equal coefficients come back bit for bit, and so does an end
+/// coefficient of a clamped spline. Limits at breakpoints as above.
+Eigen::VectorXd evaluate(const BSpline& spline, double u);
+
 /// The same spline with `new_knots` (increasing or equal, inside the domain) inserted. Boehm's and the Oslo
 /// algorithm in one: Piegl & Tiller, A5.4. Throws GeometryError if a multiplicity would exceed degree + 1 or a
 /// knot lies outside the domain.
