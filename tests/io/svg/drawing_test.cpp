@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 #include <sstream>
 
@@ -11,6 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "geometry/errors.h"
+#include "geometry/shapes/curves.h"
+#include "geometry/shapes/regions.h"
 #include "io/svg/bezier_path.h"
 #include "tests/io/svg/xml_check.h"
 
@@ -23,32 +24,13 @@ using geometry::NurbsCurve;
 using geometry::Point2;
 using geometry::Points;
 
-NurbsCurve<2> circle(double radius, const Point2& centre) {
-  const double w = std::numbers::sqrt2 / 2.0;
-  HomogeneousPoints<2> net(3, 9);
-  net << 1, w, 0, -w, -1, -w, 0, w, 1,  //
-      0, w, 1, w, 0, -w, -1, -w, 0,     //
-      1, w, 1, w, 1, w, 1, w, 1;
-  net.topRows<2>() = (radius * net.topRows<2>() + centre * net.row(2)).eval();
-  return {KnotVector(2, {0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4}), net};
-}
-
 NurbsCurve<2> bezier(const Points<2>& points) {
   return NurbsCurve<2>::from_points(KnotVector::bezier(static_cast<int>(points.cols()) - 1), points);
 }
 
-NurbsCurve<2> segment(const Point2& from, const Point2& to) {
-  Points<2> points(2, 2);
-  points << from, to;
-  return bezier(points);
-}
-
-Chain rectangle(double width, double height) {
-  const Point2 a(0, 0);
-  const Point2 b(width, 0);
-  const Point2 c(width, height);
-  const Point2 d(0, height);
-  return {segment(a, b), segment(b, c), segment(c, d), segment(d, a)};
+/// The rectangle's corner is the origin.
+std::vector<Chain> rectangle(double width, double height) {
+  return chains(geometry::orient(geometry::rectangle({width, height})));
 }
 
 struct PixelFrame {
@@ -97,7 +79,7 @@ TEST(SvgBezierPath, EqualWeightsArePolynomial) {
 
 TEST(SvgBezierPath, RationalCurvesStayWithinTheTolerance) {
   for (const double tolerance : {1e-1, 1e-3, 1e-6, 1e-9}) {
-    const auto segments = path_segments(circle(2.0, {1.0, -1.0}), tolerance);
+    const auto segments = path_segments(geometry::circle_curve(2.0, {1.0, -1.0}), tolerance);
     double error = 0.0;
     for (const PathSegment& segment : segments) {
       for (int k = 0; k <= 100; ++k) {
@@ -152,7 +134,7 @@ TEST(SvgBezierPath, CommandsAreTheLetterOfTheDegree) {
 
 TEST(SvgDrawing, TheShapeIsTrueToScaleAndFillsThePicture) {
   Drawing drawing;
-  drawing.chains = {rectangle(4.0, 1.0)};
+  drawing.chains = rectangle(4.0, 1.0);
   const auto elements = parse_xml(to_svg(drawing));
   const auto points = path_points(with_class(elements, "region").at(0).attribute("d"));
   ASSERT_EQ(points.size(), 5U);
@@ -168,7 +150,7 @@ TEST(SvgDrawing, TheShapeIsTrueToScaleAndFillsThePicture) {
 
 TEST(SvgDrawing, TicksStandAtTheirValues) {
   Drawing drawing;
-  drawing.chains = {rectangle(4.0, 1.0)};
+  drawing.chains = rectangle(4.0, 1.0);
   const auto elements = parse_xml(to_svg(drawing));
   const auto corner = path_points(with_class(elements, "region").at(0).attribute("d"))[0];
   const auto opposite = path_points(with_class(elements, "region").at(0).attribute("d"))[2];
@@ -196,7 +178,9 @@ TEST(SvgDrawing, TheCurveBoundsThePictureNotItsControlPoints) {
 
 TEST(SvgDrawing, HolesShareThePathOfTheirRegion) {
   Drawing drawing;
-  drawing.chains = {rectangle(4.0, 4.0), {circle(1.0, {2.0, 2.0})}};
+  const Chain outer = rectangle(4.0, 4.0)[0];
+  const Chain hole{geometry::circle_curve(1.0, {2.0, 2.0})};
+  drawing.chains = chains(geometry::orient(geometry::region(std::vector{outer, hole})));
   const auto region = with_class(parse_xml(to_svg(drawing)), "region");
   ASSERT_EQ(region.size(), 1U);
   EXPECT_EQ(region[0].attribute("fill-rule"), "evenodd");
@@ -207,7 +191,7 @@ TEST(SvgDrawing, HolesShareThePathOfTheirRegion) {
 
 TEST(SvgDrawing, OpenChainsAreLines) {
   Drawing drawing;
-  drawing.chains = {{segment({0, 0}, {1, 1}), segment({1, 1}, {2, 0})}};
+  drawing.chains = {{geometry::line_segment<2>({0, 0}, {1, 1}), geometry::line_segment<2>({1, 1}, {2, 0})}};
   const auto elements = parse_xml(to_svg(drawing));
   EXPECT_TRUE(with_class(elements, "region").empty());
   const auto curves = with_class(elements, "curves");
@@ -218,7 +202,7 @@ TEST(SvgDrawing, OpenChainsAreLines) {
 
 TEST(SvgDrawing, TheControlNetIsDrawnWhereItIs) {
   Drawing drawing;
-  drawing.chains = {{circle(1.0, {0.0, 0.0})}};
+  drawing.chains = {{geometry::circle_curve(1.0)}};
   EXPECT_TRUE(with_class(parse_xml(to_svg(drawing)), "control polygon").empty());
   drawing.show_control_net = true;
   const auto elements = parse_xml(to_svg(drawing));
@@ -233,9 +217,9 @@ TEST(SvgDrawing, TheControlNetIsDrawnWhereItIs) {
 
 TEST(SvgDrawing, LoopsOfABoundaryAreRunThroughWithTheRegionOnTheLeft) {
   geometry::OrientedBoundary<2> oriented;
-  oriented.boundary.patches = {{"right", segment({1, 0}, {1, 1}), 1},
-                               {"bottom", segment({1, 0}, {0, 0}), -1},
-                               {"back", segment({1, 1}, {0, 0}), 1}};
+  oriented.boundary.patches = {{"right", geometry::line_segment<2>({1, 0}, {1, 1}), 1},
+                               {"bottom", geometry::line_segment<2>({1, 0}, {0, 0}), -1},
+                               {"back", geometry::line_segment<2>({1, 1}, {0, 0}), 1}};
   oriented.topology.shells = {{{1, 0, 2}, true, false}};
   const auto found = chains(oriented);
   ASSERT_EQ(found.size(), 1U);
@@ -248,7 +232,7 @@ TEST(SvgDrawing, LoopsOfABoundaryAreRunThroughWithTheRegionOnTheLeft) {
 template <class Change>
 std::string message_of(const Change& change) {
   Drawing drawing;
-  drawing.chains = {rectangle(1.0, 1.0)};
+  drawing.chains = rectangle(1.0, 1.0);
   change(drawing);
   try {
     to_svg(drawing);

@@ -31,6 +31,8 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include "geometry/errors.h"
+#include "geometry/shapes/curves.h"
+#include "geometry/shapes/solids.h"
 
 namespace isorim::io {
 namespace {
@@ -47,57 +49,17 @@ using geometry::Vector3;
 
 // ---- Shapes
 
-/// The unit circle in four quadratic arcs, 3 x 9.
-HomogeneousPoints<2> unit_circle() {
-  const double w = std::numbers::sqrt2 / 2.0;
-  HomogeneousPoints<2> net(3, 9);
-  net << 1, w, 0, -w, -1, -w, 0, w, 1,  //
-      0, w, 1, w, 0, -w, -1, -w, 0,     //
-      1, w, 1, w, 1, w, 1, w, 1;
-  return net;
-}
-
-KnotVector quarter_arcs(int quarters) {
-  std::vector<double> knots{0.0};
-  for (int i = 0; i <= quarters; ++i) knots.insert(knots.end(), 2, static_cast<double>(i));
-  knots.push_back(quarters);
-  return {2, knots};
-}
-
-/// The profile (r, z) turned about the z axis, u along the circle: S_u x S_v points away from the material when the
-/// profile runs upwards on the outside.
-NurbsSurface<3> revolved(const KnotVector& knots, const HomogeneousPoints<2>& profile) {
-  const HomogeneousPoints<2> circle = unit_circle();
-  HomogeneousPoints<3> net(4, circle.cols() * profile.cols());
-  for (Eigen::Index j = 0; j < profile.cols(); ++j) {
-    for (Eigen::Index i = 0; i < circle.cols(); ++i) {
-      net.col(i + j * circle.cols()) << profile(0, j) * circle(0, i), profile(0, j) * circle(1, i),
-          profile(1, j) * circle(2, i), profile(2, j) * circle(2, i);
-    }
-  }
-  return {quarter_arcs(4), knots, net};
-}
-
 constexpr double radius = 2.5;
-
-NurbsSurface<3> sphere() {
-  const HomogeneousPoints<2> circle = unit_circle();
-  HomogeneousPoints<2> profile(3, 5);
-  // The half circle from the south pole by the equator to the north pole.
-  for (int i = 0; i < 5; ++i) profile.col(i) << radius * circle(1, i), -radius * circle(0, i), circle(2, i);
-  return revolved(quarter_arcs(2), profile);
-}
-
 constexpr double major_radius = 3.0;
 constexpr double minor_radius = 1.25;
 
-NurbsSurface<3> torus() {
-  const HomogeneousPoints<2> circle = unit_circle();
-  HomogeneousPoints<2> profile(3, 9);
-  profile.row(0) = major_radius * circle.row(2) + minor_radius * circle.row(0);
-  profile.row(1) = minor_radius * circle.row(1);
-  profile.row(2) = circle.row(2);
-  return revolved(quarter_arcs(4), profile);
+/// The boundary with every patch's parametrisation turned round in v, the orientations as given: outward normals if -1.
+Boundary<3> reversed(Boundary<3> boundary, int orientation) {
+  for (auto& patch : boundary.patches) {
+    patch.shape = reverse(patch.shape, geometry::Direction::v);
+    patch.orientation = orientation;
+  }
+  return boundary;
 }
 
 double distance_to_sphere(const Point3& x) {
@@ -142,8 +104,19 @@ NurbsCurve<Dim> random_curve(int p, Weights weights, std::mt19937& random) {
 Boundary<3> mixed_surfaces() {
   std::mt19937 random(7);
   Boundary<3> boundary;
-  for (const auto& [p, q] : std::vector<std::pair<int, int>>{
-           {1, 1}, {2, 1}, {1, 3}, {2, 2}, {3, 3}, {2, 4}, {4, 3}, {5, 1}, {6, 7}, {10, 2}, {3, 12}, {20, 18}}) {
+  for (const auto& [p, q] : std::vector<std::pair<int, int>>{{1, 1},
+                                                             {2, 1},
+                                                             {1, 3},
+                                                             {2, 2},
+                                                             {3, 3},
+                                                             {2, 4},
+                                                             {4, 3},
+                                                             {5, 1},
+                                                             {6, 7},
+                                                             {10, 2},
+                                                             {3, 12},
+                                                             {20, 18},
+                                                             {30, 29}}) {
     for (const Weights weights : {Weights::one, Weights::random}) {
       for (const int orientation : {1, -1}) {
         const std::string name = fmt::format("patch {}", boundary.patches.size());
@@ -157,7 +130,7 @@ Boundary<3> mixed_surfaces() {
 Boundary<2> mixed_curves() {
   std::mt19937 random(8);
   Boundary<2> boundary;
-  for (const int p : {1, 2, 3, 4, 5, 8, 13, 20}) {
+  for (const int p : {1, 2, 3, 4, 5, 8, 13, 30}) {
     for (const Weights weights : {Weights::one, Weights::random}) {
       for (const int orientation : {1, -1}) {
         const std::string name = fmt::format("patch {}", boundary.patches.size());
@@ -268,19 +241,13 @@ double largest_error(const Boundary<Dim>& boundary, vtkUnstructuredGrid* grid) {
 
 // ---- Exactness
 
-TEST_F(BezierWriter, CellsAreTheSphere) {
-  for (const int orientation : {1, -1}) {
-    const Boundary<3> boundary{{{"sphere", sphere(), orientation}}};
+TEST_F(BezierWriter, CellsAreQuadrics) {
+  for (const Boundary<3>& boundary :
+       {geometry::sphere(radius), reversed(geometry::sphere(radius), -1), geometry::torus(major_radius, minor_radius),
+        reversed(geometry::torus(major_radius, minor_radius), -1), geometry::cylinder(1.0, 3.0, {1.0, 2.0, 3.0}),
+        geometry::cone(2.0, 0.0, 1.0), geometry::box({1.0, 2.0, 3.0})}) {
     write_vtu(path_, bezier_elements(boundary));
-    EXPECT_LT(largest_error(boundary, read()), 1e-12);
-  }
-}
-
-TEST_F(BezierWriter, CellsAreTheTorus) {
-  for (const int orientation : {1, -1}) {
-    const Boundary<3> boundary{{{"torus", torus(), orientation}}};
-    write_vtu(path_, bezier_elements(boundary));
-    EXPECT_LT(largest_error(boundary, read()), 1e-12);
+    EXPECT_LT(largest_error(boundary, read()), 1e-12) << boundary.patches[0].name;
   }
 }
 
@@ -320,7 +287,7 @@ TEST_F(BezierWriter, SpaceCurvesAreTheirSegments) {
 }
 
 TEST_F(BezierWriter, PlaneCurvesLieInThePlane) {
-  const std::vector<NurbsCurve<2>> curves{{quarter_arcs(4), unit_circle()}};
+  const std::vector<NurbsCurve<2>> curves{geometry::circle_curve(1.0)};
   write_curves_vtu<2>(path_, curves);
   const auto grid = read();
   ASSERT_EQ(grid->GetNumberOfCells(), 4);
@@ -372,11 +339,11 @@ double largest_distance(vtkPolyData* mesh, Distance distance) {
 }
 
 TEST_F(BezierWriter, TessellationLiesOnTheSphereAndTheTorus) {
-  write_vtu(path_, bezier_elements(Boundary<3>{{{"sphere", sphere(), 1}}}));
+  write_vtu(path_, bezier_elements(geometry::sphere(radius)));
   const auto sphere_mesh = tessellated(read());
   EXPECT_GT(sphere_mesh->GetNumberOfPoints(), 8 * 25);
   EXPECT_LT(largest_distance(sphere_mesh, distance_to_sphere), 1e-6);
-  write_vtu(path_, bezier_elements(Boundary<3>{{{"torus", torus(), -1}}}));
+  write_vtu(path_, bezier_elements(reversed(geometry::torus(major_radius, minor_radius), -1)));
   const auto torus_mesh = tessellated(read());
   EXPECT_GT(torus_mesh->GetNumberOfPoints(), 16 * 25);
   EXPECT_LT(largest_distance(torus_mesh, distance_to_torus), 1e-6);
@@ -396,16 +363,15 @@ double signed_double_area(vtkPolyData* mesh, const std::function<Vector3(const P
 }
 
 TEST_F(BezierWriter, EveryCellShowsItsOutwardSide) {
-  // Reversed, the natural normal points inwards and the orientation says so.
   const auto outward = [](const Point3& x) -> Vector3 { return x; };
   const double area = 4.0 * std::numbers::pi * radius * radius;
-  const NurbsSurface<3> inwards = reverse(sphere(), geometry::Direction::v);
-  for (const auto& boundary : {Boundary<3>{{{"outwards", sphere(), 1}}}, Boundary<3>{{{"inwards", inwards, -1}}}}) {
+  const Boundary<3> sphere = geometry::sphere(radius);
+  for (const Boundary<3>& boundary : {sphere, reversed(sphere, -1)}) {
     write_vtu(path_, bezier_elements(boundary));
     EXPECT_NEAR(signed_double_area(tessellated(read()), outward), 2.0 * area, 0.02 * area);
   }
-  write_vtu(path_, bezier_elements(Boundary<3>{{{"turned inside out", inwards, 1}}}));
-  EXPECT_NEAR(signed_double_area(tessellated(read()), outward), -2.0 * area, 0.02 * area);
+  write_vtu(path_, bezier_elements(reversed(sphere, 1)));
+  EXPECT_NEAR(signed_double_area(tessellated(read()), outward), -2.0 * area, 0.02 * area) << "inside out";
 }
 
 // ---- What else the file says
@@ -500,7 +466,7 @@ std::string message_of(const Action& action) {
 }
 
 TEST_F(BezierWriter, RefusesFieldsThatDoNotFit) {
-  const ElementTable<3> table = bezier_elements(Boundary<3>{{{"sphere", sphere(), 1}}});
+  const ElementTable<3> table = bezier_elements(geometry::sphere(radius));
   const std::vector<double> values(8);
   const auto with_point_field = [&](const VtuField& field) {
     return message_of([&] { write_vtu(path_, table, {{}, {field}, {}}); });
