@@ -18,7 +18,8 @@ struct LoopPosition {
 /// Which way a walk along a loop goes.
 enum class Way { forward, backward };
 
-/// The first point of a walk from `from` outside the disc; `met` tells whether `other` was passed before.
+/// The first point of a walk from `from` outside the disc; `met_other` tells whether `other` (may be null) was passed
+/// before.
 struct DiscExit {
   Point2 place;
   bool left_disc = false;
@@ -30,7 +31,7 @@ class DiscWalk {
   DiscWalk(const PlaneLoop& loop, const Point2& centre, double radius)
       : loop_(loop), centre_(centre), radius_(radius) {}
 
-  DiscExit walk(const LoopPosition& from, Way way, const std::optional<LoopPosition>& other) const {
+  DiscExit walk(const LoopPosition& from, Way way, const LoopPosition* other) const {
     const int count = static_cast<int>(loop_.pieces.size());
     const double end = way == Way::forward ? 1.0 : 0.0;
     DiscExit result;
@@ -89,7 +90,7 @@ struct Contact {
   int second_loop = 0;
   LoopPosition first;
   LoopPosition second;
-  Point2 place;
+  Point2 place = Point2::Zero();
 };
 
 class ContactJudge {
@@ -130,8 +131,7 @@ class ContactJudge {
     for (const bool of_first : {true, false}) {
       const DiscWalk disc(loop(of_first ? contact.first_loop : contact.second_loop), contact.place, radius);
       const LoopPosition& from = of_first ? contact.first : contact.second;
-      const std::optional<LoopPosition> other =
-          same_loop ? std::optional(of_first ? contact.second : contact.first) : std::nullopt;
+      const LoopPosition* other = same_loop ? (of_first ? &contact.second : &contact.first) : nullptr;
       for (const Way way : {Way::backward, Way::forward}) {
         const DiscExit exit = disc.walk(from, way, other);
         strands.joined = strands.joined || exit.met_other || !exit.left_disc;
@@ -263,7 +263,7 @@ std::optional<LoopConflict> find_loop_conflict(const std::vector<PlaneLoop>& loo
                   [&](const SweepItem* old) { return old->shape->upper.x() + tolerance < item.shape->lower.x(); });
     for (const SweepItem* old : active) {
       if (are_separated(*old->shape, *item.shape, tolerance)) continue;
-      const Contact pair{old->loop, item.loop, {old->piece, 0.0}, {item.piece, 0.0}, {}};
+      const Contact pair{old->loop, item.loop, {old->piece, 0.0}, {item.piece, 0.0}};
       if (std::optional<LoopConflict> found = pair_search.search(pair, *old->shape, *item.shape)) return found;
     }
     active.push_back(&item);
