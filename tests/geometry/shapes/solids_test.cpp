@@ -87,7 +87,7 @@ TEST(Solids, Cylinder) {
   EXPECT_EQ(solid.patches[1].name, "side");
   EXPECT_EQ(solid.patches[2].name, "top");
   expect_on_surface(
-      solid.patches[0], [](const Point3& x) { return 3.0 - x.z(); }, 0.0);
+      solid.patches[0], [](const Point3& x) { return 3.0 - x.z(); }, 2e-15);
   expect_on_surface(
       solid.patches[1], [](const Point3& x) { return 2.0 * std::hypot(x.x() - 1.0, x.y() - 2.0) - 1.0; }, 2e-15);
   expect_on_surface(
