@@ -164,6 +164,23 @@ class ContactJudge {
   double tolerance_;
 };
 
+/// The place where the pieces meet near (s, t), by Newton's method; `nearby` if that leads away (parallel strands).
+Point2 meeting_point(const PlanePiece& a, double s, const PlanePiece& b, double t, const Point2& nearby, double reach) {
+  constexpr double step = 1e-6;
+  for (int i = 0; i < 8; ++i) {
+    const Vector2 apart = evaluate(b, t) - evaluate(a, s);
+    const Vector2 da = (evaluate(a, s + step) - evaluate(a, s - step)) / (2.0 * step);
+    const Vector2 db = (evaluate(b, t + step) - evaluate(b, t - step)) / (2.0 * step);
+    const double determinant = da.x() * db.y() - da.y() * db.x();
+    if (std::abs(determinant) <= 1e-9 * da.norm() * db.norm()) return nearby;
+    s += (apart.x() * db.y() - apart.y() * db.x()) / determinant;
+    t += (apart.x() * da.y() - apart.y() * da.x()) / determinant;
+    if (std::abs(s - 0.5) > 0.6 || std::abs(t - 0.5) > 0.6) return nearby;
+  }
+  const Point2 place = evaluate(a, s);
+  return (place - nearby).norm() <= reach && (place - evaluate(b, t)).norm() <= 1e-3 * reach ? place : nearby;
+}
+
 /// Bisects one pair of pieces down to its contacts and judges each.
 class PairSearch {
  public:
@@ -171,6 +188,8 @@ class PairSearch {
 
   std::optional<LoopConflict> search(const Contact& pair, const PlanePiece& a, const PlanePiece& b) {
     pair_ = pair;
+    first_ = &a;
+    second_ = &b;
     done_.clear();
     return descend(a, {0.0, 1.0}, b, {0.0, 1.0});
   }
@@ -219,6 +238,9 @@ class PairSearch {
       done_.push_back({contact.place, radius});
       return std::nullopt;
     }
+    if (*kind == ContactKind::crossing) {
+      contact.place = meeting_point(*first_, s, *second_, t, contact.place, radius);
+    }
     return LoopConflict{
         *kind, contact.first_loop, contact.second_loop, contact.first.piece, contact.second.piece, contact.place};
   }
@@ -226,6 +248,8 @@ class PairSearch {
   const ContactJudge& judge_;
   double tolerance_;
   Contact pair_;
+  const PlanePiece* first_ = nullptr;
+  const PlanePiece* second_ = nullptr;
   std::vector<Disc> done_;
 };
 

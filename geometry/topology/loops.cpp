@@ -322,10 +322,11 @@ class LoopOrienter {
   }
 
   [[noreturn]] void refuse(const LoopConflict& conflict) const {
-    const int a =
-        patches_of_[static_cast<std::size_t>(conflict.first_loop)][static_cast<std::size_t>(conflict.first_piece)];
-    const int b =
-        patches_of_[static_cast<std::size_t>(conflict.second_loop)][static_cast<std::size_t>(conflict.second_piece)];
+    const auto patch = [&](int loop, int piece) {
+      return patches_of_[static_cast<std::size_t>(loop)][static_cast<std::size_t>(piece)];
+    };
+    const auto [a, b] = std::minmax(
+        {patch(conflict.first_loop, conflict.first_piece), patch(conflict.second_loop, conflict.second_piece)});
     const std::string place = at(conflict.place);
     if (conflict.kind == ContactKind::overlap) {
       throw GeometryError(

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "geometry/shapes/curves.h"
@@ -69,7 +70,7 @@ Points<2> columns(const std::vector<Point2>& points) {
 Boundary<2> with_holes(Boundary<2> region, const std::vector<Boundary<2>>& holes) {
   for (const Boundary<2>& hole : holes) {
     for (Patch<2> patch : hole.patches) {
-      patch.name += "_hole_" + std::to_string(region.patches.size());
+      patch.name += fmt::format("_hole_{}", region.patches.size());
       region.patches.push_back(patch);
     }
   }

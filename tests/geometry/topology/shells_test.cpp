@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "geometry/shapes/curves.h"
@@ -203,7 +204,7 @@ TEST(OrientShells, RefusesAMoebiusStrip) {
     Points<3> points(3, 4);
     points << rung(i, -0.5), rung(i, 0.5), rung(i + 1, -0.5), rung(i + 1, 0.5);
     strip.patches.push_back(
-        {"m" + std::to_string(i), NurbsSurface<3>::from_points(KnotVector::bezier(1), KnotVector::bezier(1), points)});
+        {fmt::format("m{}", i), NurbsSurface<3>::from_points(KnotVector::bezier(1), KnotVector::bezier(1), points)});
   }
   EXPECT_THAT(refusal([&] { orient(strip); }),
               AllOf(HasSubstr("cannot be oriented"), HasSubstr("Moebius"), HasSubstr("at (")));
@@ -249,7 +250,7 @@ TEST(OrientShells, TenThousandPatchesTakeLessThanTwoSeconds) {
     for (int j = 0; j < 100; ++j) {
       Points<3> points(3, 4);
       points << node(i, j), node(i + 1, j), node(i, j + 1), node(i + 1, j + 1);
-      ring.patches.push_back({"p" + std::to_string(100 * i + j),
+      ring.patches.push_back({fmt::format("p{}", 100 * i + j),
                               NurbsSurface<3>::from_points(KnotVector::bezier(1), KnotVector::bezier(1), points)});
     }
   }
