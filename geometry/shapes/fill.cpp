@@ -287,7 +287,7 @@ std::vector<NurbsSurface<2>> fill_group(const FillLoop& outer, const std::vector
   if (holes.empty()) {
     if (auto patches = fill_star(outer)) return *patches;
   }
-  constexpr int most_halvings = 5;
+  constexpr int most_halvings = 7;
   std::vector<PlanePiece> pieces = outer.pieces;
   std::vector<std::vector<PlanePiece>> inner;
   for (const FillLoop* hole : holes) inner.push_back(hole->pieces);

@@ -204,6 +204,28 @@ TEST(Revolve, GivesTheFlywheelOfTheThesis) {
   expect_solid(solid, 5850.0 * pi, 23125.0 * pi);
 }
 
+TEST(Revolve, GivesTheRedBloodCellOfTheThesis) {
+  // Six rational spans with weights up to 5, an open profile that ends on the y axis.
+  HomogeneousPoints<2> net(3, 13);
+  const double w = 0.5 * std::numbers::sqrt2;
+  const double a = 1.7677669529663689;
+  const double b = 1.0606601717798214;
+  const double c = 0.3535533905932738;
+  net << 0.0, -2.5, -0.75, -w, -1.5, -a, -2.5, -a, -1.5, -w, -0.75, -2.5, 0.0,  //
+      -4.5, -5.0, -1.25, -b, -1.5, -b, -0.5, c, 0.5, c, 0.25, 0.0, -0.5,        //
+      5.0, 5.0, 1.0, w, 1.0, w, 1.0, w, 1.0, w, 1.0, 5.0, 5.0;
+  std::vector<double> knots{0.0};
+  for (int i = 0; i <= 6; ++i) knots.insert(knots.end(), 2, i / 6.0);
+  knots.push_back(1.0);
+  const NurbsCurve<3> profile = embed(NurbsCurve<2>(KnotVector(2, knots), net));
+  const Boundary<3> solid = revolve_solid(std::vector{profile}, Axis{Point3(0, 0, 0), Vector3(0, 1, 0)});
+  // The values of a 40-digit quadrature.
+  const Measures found = measures(solid, 60);
+  EXPECT_NEAR(found.content, 30.934183507451133, 1e-11);
+  EXPECT_NEAR(found.boundary, 57.657038485113944, 1e-7);
+  EXPECT_NO_THROW(require_closed(orient(solid)));
+}
+
 TEST(Ruled, JoinsCurvesOfDifferentDegrees) {
   const NurbsCurve<3> arc = embed(circular_arc(1.0, Point2(0, 0), 0.0, pi));
   const NurbsCurve<3> line = line_segment<3>(Point3(1, 0, 2), Point3(-1, 0, 2));
