@@ -257,6 +257,19 @@ TEST(BSpline, ExtractionOperatorsGiveTheBasisFromBernsteinPolynomials) {
   }
 }
 
+TEST(BSpline, ExtractionRowsGiveTheIntegralsOfTheBasis) {
+  // A function of degree p integrates to (its support) / (p + 1), a Bernstein polynomial to (its cell) / (p + 1).
+  Random random(24);
+  for (int trial = 0; trial < trials; ++trial) {
+    const int p = random.integer(1, 8);
+    const KnotVector knots = random_knots(random, p, testing::Ends::clamped, random.integer(1, p + 1));
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(knots.basis_count());
+    for (const ExtractionOperator& extraction : extraction_operators(knots))
+      sums.segment(extraction.first_function, p + 1) += extraction.domain.length() * extraction.matrix.rowwise().sum();
+    for (int i = 0; i < knots.basis_count(); ++i) EXPECT_NEAR(sums[i], knots[i + p + 1] - knots[i], 1e-14 * 10);
+  }
+}
+
 TEST(BSpline, ExtractionOfABezierSegmentIsTheIdentity) {
   const std::vector<ExtractionOperator> operators = extraction_operators(KnotVector::bezier(4));
   ASSERT_EQ(operators.size(), 1u);
