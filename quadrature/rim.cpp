@@ -200,7 +200,8 @@ class ConeEvaluator {
   std::pair<Piece, Piece> split(const Piece& piece, int direction) const {
     if (direction < Dim - 1) {
       auto [first, second] = bisect<Dim>(piece, direction);
-      return {{std::move(first), piece.radial}, {std::move(second), piece.radial}};
+      // Named, so that the pair moves them: the net of a copy would lie in the original.
+      return {Piece{std::move(first), piece.radial}, Piece{std::move(second), piece.radial}};
     }
     std::pair<Piece, Piece> halves{copy(piece), copy(piece)};
     halves.first.radial.last = halves.second.radial.first = piece.radial.middle();
