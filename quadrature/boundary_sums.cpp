@@ -16,6 +16,9 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
+/// Differences of two rules below this, relative to measure times distance from the pole, are rounding.
+constexpr double difference_noise = 4.0 * epsilon;
+
 /// Elements that one task integrates: few enough to share out, enough to fill the vector lanes.
 constexpr std::size_t elements_per_task = 64;
 
@@ -94,7 +97,7 @@ class SumsEvaluator {
                          0.5 * measure / scales_.sums[Layout::measure];
     Values allowed = target_ * share;
     for (int k = 0; k < Layout::count; ++k) {
-      const double rounding = 4.0 * epsilon * measure * std::pow(scales_.radius, power_of_distance<Dim>(k));
+      const double rounding = difference_noise * measure * std::pow(scales_.radius, power_of_distance<Dim>(k));
       allowed[k] = std::max({allowed[k], rounding, std::numeric_limits<double>::min()});
     }
     return allowed;
@@ -193,7 +196,10 @@ BoundarySums<Dim> boundary_sums(const geometry::ElementTable<Dim>& table, const 
   }
   const bool exact = std::all_of(table.elements.begin(), table.elements.end(),
                                  [](const geometry::BezierElement<Dim>& element) { return element.polynomial; });
-  return {totals.sum, totals.error + rounding_error(scales, totals), totals.evaluations,
+  const ElementSums<Dim> rounding = rounding_error(scales, totals);
+  ElementSums<Dim> noise = ElementSums<Dim>::Constant(difference_noise * totals.sum[Layout::measure]);
+  for (int k = 0; k < Layout::count; ++k) noise[k] *= std::pow(scales.radius, power_of_distance<Dim>(k));
+  return {totals.sum, totals.error + rounding, rounding + noise, totals.evaluations,
           exact && options.fixed_points == 0};
 }
 

@@ -16,6 +16,8 @@ struct BoundarySums {
   ElementSums<Dim> value;
   /// Estimated absolute error of each, rounding included.
   ElementSums<Dim> error;
+  /// The part of each error that no rule can lower: differences below it count as rounding.
+  ElementSums<Dim> rounding;
   /// Points of the boundary at which position and tangents were evaluated.
   std::int64_t evaluations = 0;
   /// Every element is polynomial, so all sums but the measure are exact up to rounding.

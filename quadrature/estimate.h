@@ -16,6 +16,8 @@ enum class Status {
   exact,
   /// The estimated error met the tolerance.
   converged,
+  /// The estimated error is above the tolerance because of rounding alone: no quadrature does better with these data.
+  limited_by_rounding,
   /// A fixed rule was asked for: no tolerance was aimed at.
   fixed_rule,
   /// The estimated error is above the tolerance; see Estimate::error.

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <functional>
 
+#include "quadrature/estimate.h"
+
 namespace isorim::quadrature {
 
 /// How to integrate over a boundary.
@@ -20,5 +22,12 @@ struct Options {
   /// Called now and then from one thread with the finished fraction in [0, 1]; may be empty.
   std::function<void(double)> progress;
 };
+
+/// What an estimated error says: `allowed` by the tolerance, `rounding` the part that no rule can lower.
+inline Status judge(double error, double allowed, double rounding, const Options& options) {
+  if (options.fixed_points > 0) return Status::fixed_rule;
+  if (error <= allowed) return Status::converged;
+  return error <= allowed + rounding ? Status::limited_by_rounding : Status::tolerance_not_reached;
+}
 
 }  // namespace isorim::quadrature

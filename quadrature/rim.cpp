@@ -22,6 +22,9 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
+/// Differences of two rules below this, relative to the integral of |f|, are rounding.
+constexpr double difference_noise = 8.0 * epsilon;
+
 /// The integral and the integral of the absolute value, which tells how much cancels.
 using Values = Eigen::Array<double, 2, 1>;
 constexpr int signed_value = 0;
@@ -72,7 +75,7 @@ class IntegrandCall {
   Values allowance(double share, const Values& value) const {
     Values allowed;
     allowed[signed_value] =
-        std::max({target_ * share, 8.0 * epsilon * value[absolute_value], std::numeric_limits<double>::min()});
+        std::max({target_ * share, difference_noise * value[absolute_value], std::numeric_limits<double>::min()});
     allowed[absolute_value] = std::numeric_limits<double>::max();
     return allowed;
   }
@@ -260,12 +263,9 @@ class Integration {
   IntegralResult result(const AdaptiveTotals<Values>& totals) const {
     const double rounding = 4.0 * epsilon * totals.sum[absolute_value];
     IntegralResult result{{totals.sum[signed_value], totals.error[signed_value] + rounding}, totals.evaluations, {}};
-    if (options_.fixed_points > 0) {
-      result.status = Status::fixed_rule;
-    } else {
-      const double allowed = options_.tolerance * reference_size(totals.sum) + rounding;
-      result.status = result.integral.error <= allowed ? Status::converged : Status::tolerance_not_reached;
-    }
+    const double allowed = options_.tolerance * reference_size(totals.sum);
+    const double noise = rounding + difference_noise * totals.sum[absolute_value];
+    result.status = judge(result.integral.error, allowed, noise, options_);
     return result;
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
@@ -12,6 +13,8 @@
 namespace isorim::solver {
 
 namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 using quadrature::BoundarySums;
 using quadrature::Status;
@@ -47,45 +50,60 @@ void set_principal_axes(DomainProperties<Dim>& properties) {
   if (properties.principal_axes.determinant() < 0.0) properties.principal_axes.col(Dim - 1) *= -1.0;
 }
 
+/// Errors of measure, centroid and inertia.
+template <int Dim>
+struct DomainErrors {
+  double measure = 0.0;
+  geometry::Vector<Dim> centroid;
+  double inertia = 0.0;
+};
+
+/// How errors of the sums pass on to what is made from them; `offset` is the centroid relative to the pole.
+template <int Dim>
+DomainErrors<Dim> propagate(const quadrature::ElementSums<Dim>& sum_errors, double measure,
+                            const geometry::Vector<Dim>& offset) {
+  using Layout = SumLayout<Dim>;
+  DomainErrors<Dim> errors;
+  errors.measure = sum_errors[Layout::content] / Dim;
+  const geometry::Vector<Dim> first = sum_errors.template segment<Dim>(Layout::first).matrix() / (Dim + 1);
+  errors.centroid = (first + errors.measure * offset.cwiseAbs()) / measure;
+  errors.inertia =
+      second_moments<Dim>(sum_errors).trace() + offset.norm() * (2.0 * first.norm() + errors.measure * offset.norm());
+  return errors;
+}
+
 template <int Dim>
 DomainProperties<Dim> domain_properties(const BoundarySums<Dim>& sums, const geometry::Point<Dim>& pole) {
   using Layout = SumLayout<Dim>;
   DomainProperties<Dim> result;
   const double measure = sums.value[Layout::content] / Dim;
-  const double measure_error = sums.error[Layout::content] / Dim;
-  if (!(measure > measure_error)) {
+  const geometry::Vector<Dim> offset = sums.value.template segment<Dim>(Layout::first).matrix() / ((Dim + 1) * measure);
+  const DomainErrors<Dim> errors = propagate<Dim>(sums.error, measure, offset);
+  if (!(measure > errors.measure)) {
     throw GeometryError(
         fmt::format("the boundary encloses {:.6g} with an error of {:.2g}; expected a positive {}, so its normals "
                     "point inwards or it is without content",
-                    measure, measure_error, Dim == 2 ? "area" : "volume"));
+                    measure, errors.measure, Dim == 2 ? "area" : "volume"));
   }
-  result.measure = {measure, measure_error};
-  const geometry::Vector<Dim> offset = sums.value.template segment<Dim>(Layout::first).matrix() / ((Dim + 1) * measure);
-  const geometry::Vector<Dim> first_error = sums.error.template segment<Dim>(Layout::first).matrix() / (Dim + 1);
+  result.measure = {measure, errors.measure};
   result.centroid = pole + offset;
-  result.centroid_error = (first_error + measure_error * offset.cwiseAbs()) / measure +
-                          std::numeric_limits<double>::epsilon() * result.centroid.cwiseAbs();
+  result.centroid_error = errors.centroid + epsilon * result.centroid.cwiseAbs();
   const Tensor<Dim> about_pole = second_moments<Dim>(sums.value);
   result.inertia = inertia_from<Dim>(about_pole - measure * offset * offset.transpose());
-  const double shift_error = offset.norm() * (2.0 * first_error.norm() + measure_error * offset.norm());
-  const double cancellation = 4.0 * std::numeric_limits<double>::epsilon() * about_pole.trace();
-  result.inertia_error = second_moments<Dim>(sums.error).trace() + shift_error + cancellation;
+  result.inertia_error = errors.inertia + 4.0 * epsilon * about_pole.trace();
   set_principal_axes(result);
   return result;
 }
 
-/// What an estimate says about the tolerance, where nothing is known to be exact.
-Status status_of(double relative_error, const quadrature::Options& options) {
-  if (options.fixed_points > 0) return Status::fixed_rule;
-  return relative_error <= options.tolerance ? Status::converged : Status::tolerance_not_reached;
-}
-
+/// The worst of the statuses of measure, centroid and inertia.
 template <int Dim>
-Status domain_status(const BoundarySums<Dim>& sums, const DomainProperties<Dim>& domain, double size,
-                     const quadrature::Options& options) {
-  const double worst = std::max({domain.measure.error / domain.measure.value, domain.centroid_error.maxCoeff() / size,
-                                 domain.inertia_error / domain.inertia.trace()});
-  const Status status = status_of(worst, options);
+Status domain_status(const BoundarySums<Dim>& sums, const DomainProperties<Dim>& domain, const DomainErrors<Dim>& noise,
+                     double size, const quadrature::Options& options) {
+  const double tolerance = options.tolerance;
+  const Status status = std::max(
+      {quadrature::judge(domain.measure.error, tolerance * domain.measure.value, noise.measure, options),
+       quadrature::judge(domain.centroid_error.maxCoeff(), tolerance * size, noise.centroid.maxCoeff(), options),
+       quadrature::judge(domain.inertia_error, tolerance * domain.inertia.trace(), noise.inertia, options)});
   return sums.exact && status == Status::converged ? Status::exact : status;
 }
 
@@ -107,10 +125,15 @@ GeometricProperties<Dim> geometric_properties(const geometry::ElementTable<Dim>&
       sums.value.template segment<Dim>(Layout::normal).matrix().norm() / result.boundary_measure.value;
   result.evaluations = sums.evaluations;
   result.boundary_status =
-      status_of(result.boundary_measure.error / result.boundary_measure.value, options.integration);
+      quadrature::judge(result.boundary_measure.error, options.integration.tolerance * result.boundary_measure.value,
+                        sums.rounding[Layout::measure], options.integration);
   if (with_domain) {
     result.domain = domain_properties<Dim>(sums, pole);
-    result.domain_status = domain_status<Dim>(sums, *result.domain, box.diagonal(), options.integration);
+    const geometry::Vector<Dim> offset = result.domain->centroid - pole;
+    DomainErrors<Dim> noise = propagate<Dim>(sums.rounding, result.domain->measure.value, offset);
+    noise.centroid += epsilon * result.domain->centroid.cwiseAbs();
+    noise.inertia += 4.0 * epsilon * second_moments<Dim>(sums.value).trace();
+    result.domain_status = domain_status<Dim>(sums, *result.domain, noise, box.diagonal(), options.integration);
   }
   return result;
 }

@@ -1,0 +1,198 @@
+#include "quadrature/boundary_sums.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "geometry/shapes/regions.h"
+#include "geometry/shapes/solids.h"
+#include "tests/quadrature/random_elements.h"
+
+namespace isorim::quadrature {
+namespace {
+
+using geometry::bezier_elements;
+using geometry::ElementTable;
+using geometry::Point2;
+using geometry::Point3;
+using std::numbers::pi;
+using L2 = SumLayout<2>;
+using L3 = SumLayout<3>;
+
+struct KnownSolid {
+  std::string name;
+  ElementTable<3> table;
+  Point3 pole;
+  ElementSums<3> sums;
+};
+
+/// Area, volume and the second moments about a pole at the centroid.
+KnownSolid known_solid(const std::string& name, const geometry::Boundary<3>& boundary, const Point3& centroid,
+                       double area, double volume, const Point3& second) {
+  ElementSums<3> sums = ElementSums<3>::Zero();
+  sums[L3::measure] = area;
+  sums[L3::content] = 3.0 * volume;
+  sums.segment<3>(L3::second) = 5.0 * second.array();
+  return {name, bezier_elements(boundary), centroid, sums};
+}
+
+std::vector<KnownSolid> known_solids() {
+  const double sphere_volume = 4.0 * pi / 3.0;
+  // Spheroid with semi-axes 2, 2 and 1 along x: 2 pi (a^2 + c^2 artanh(e) / e).
+  const double e = std::sqrt(0.75);
+  const double spheroid_area = 2.0 * pi * (4.0 + std::atanh(e) / e);
+  const double torus_volume = 2.0 * pi * pi * 0.25;
+  const double torus_z = torus_volume * 0.25 / 4.0;
+  const double torus_x = torus_volume * (0.5 + 3.0 / 8.0 * 0.25);
+  return {
+      known_solid("sphere", geometry::sphere(1.0, Point3(0.5, 0.5, 0.5)), Point3(0.5, 0.5, 0.5), 4.0 * pi,
+                  sphere_volume, Point3::Constant(sphere_volume / 5.0)),
+      known_solid("spheroid", geometry::ellipsoid({1.0, 2.0, 2.0}), Point3::Zero(), spheroid_area, 4.0 * sphere_volume,
+                  Point3(1.0, 4.0, 4.0) * 4.0 * sphere_volume / 5.0),
+      known_solid("torus", geometry::torus(1.0, 0.5), Point3::Zero(), 2.0 * pi * pi, torus_volume,
+                  Point3(torus_x, torus_x, torus_z)),
+      known_solid("box", geometry::box({1.0, 2.0, 3.0}), Point3(0.5, 1.0, 1.5), 22.0, 6.0,
+                  Point3(1.0, 4.0, 9.0) * 6.0 / 12.0),
+      known_solid("cylinder", geometry::cylinder(2.0, 3.0), Point3(0.0, 0.0, 1.5), 20.0 * pi, 12.0 * pi,
+                  Point3(12.0 * pi, 12.0 * pi, 12.0 * pi * 0.75)),
+  };
+}
+
+TEST(BoundarySums, KnownSolidsToRounding) {
+  for (const KnownSolid& solid : known_solids()) {
+    const BoundarySums<3> sums = boundary_sums(solid.table, solid.pole, SumScope::all, {});
+    const ElementSums<3> error = (sums.value - solid.sums).abs();
+    EXPECT_LT(error[L3::measure], 1e-14 * solid.sums[L3::measure]) << solid.name;
+    EXPECT_LT(error[L3::content], 1e-14 * solid.sums[L3::content]) << solid.name;
+    EXPECT_LT(error.segment<3>(L3::first).maxCoeff(), 2e-14 * solid.sums[L3::content]) << solid.name;
+    EXPECT_LT(error.tail<6>().maxCoeff(), 1e-14 * solid.sums.tail<6>().sum()) << solid.name;
+    EXPECT_LT(error.segment<3>(L3::normal).maxCoeff(), 1e-14 * solid.sums[L3::measure]) << solid.name;
+  }
+}
+
+// The contract of every reported error: not below the true one by more than a factor of 2, rounding excepted.
+TEST(BoundarySums, EstimateCoversTheTrueError) {
+  for (const KnownSolid& solid : known_solids()) {
+    const double size = 10.0 * solid.sums[L3::measure];
+    for (double tolerance = 1e-2; tolerance > 1e-15; tolerance *= 0.1) {
+      Options options;
+      options.tolerance = tolerance;
+      const BoundarySums<3> sums = boundary_sums(solid.table, solid.pole, SumScope::all, options);
+      for (int k = 0; k < L3::count; ++k) {
+        const double error = std::abs(sums.value[k] - solid.sums[k]);
+        EXPECT_LE(error, 2.0 * sums.error[k] + 2e-15 * size) << solid.name << " " << k << " " << tolerance;
+      }
+    }
+  }
+}
+
+TEST(BoundarySums, EstimateCoversTheTrueErrorOfFixedRules) {
+  for (const KnownSolid& solid : known_solids()) {
+    for (int points = 1; points <= 16; ++points) {
+      Options options;
+      options.fixed_points = points;
+      const BoundarySums<3> sums = boundary_sums(solid.table, solid.pole, SumScope::all, options);
+      for (int k = 0; k < L3::count; ++k) {
+        const double error = std::abs(sums.value[k] - solid.sums[k]);
+        EXPECT_LE(error, 2.0 * sums.error[k] + 1e-13) << solid.name << " " << k << " " << points;
+      }
+    }
+  }
+}
+
+TEST(BoundarySums, ToleranceIsMet) {
+  for (const KnownSolid& solid : known_solids()) {
+    for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
+      Options options;
+      options.tolerance = tolerance;
+      const BoundarySums<3> sums = boundary_sums(solid.table, solid.pole, SumScope::all, options);
+      EXPECT_LE(sums.error[L3::measure], tolerance * sums.value[L3::measure]) << solid.name;
+      EXPECT_LE(sums.error[L3::content], tolerance * sums.value[L3::content]) << solid.name;
+    }
+  }
+}
+
+TEST(BoundarySums, SameBitsForAnyNumberOfThreads) {
+  const auto table = testing::random_elements<3>(1000, {2, 2}, 8.0, 23);
+  Options options;
+  options.tolerance = 1e-10;
+  options.threads = 1;
+  const BoundarySums<3> one = boundary_sums(table, Point3(0.2, 0.3, 0.4), SumScope::all, options);
+  for (const int threads : {2, 3, 8}) {
+    options.threads = threads;
+    const BoundarySums<3> many = boundary_sums(table, Point3(0.2, 0.3, 0.4), SumScope::all, options);
+    EXPECT_TRUE((one.value == many.value).all()) << threads;
+    EXPECT_TRUE((one.error == many.error).all()) << threads;
+    EXPECT_EQ(one.evaluations, many.evaluations) << threads;
+  }
+}
+
+TEST(BoundarySums, VolumeDoesNotDependOnThePole) {
+  const ElementTable<3> table = bezier_elements(geometry::torus(2.0, 0.7));
+  const double volume = 2.0 * pi * pi * 2.0 * 0.49;
+  for (const Point3& pole : {Point3(0, 0, 0), Point3(2, 0, 0), Point3(-5, 3, 1), Point3(100, 0, 0)}) {
+    const BoundarySums<3> sums = boundary_sums(table, pole, SumScope::all, {});
+    EXPECT_NEAR(sums.value[L3::content] / 3.0, volume, 1e-14 * volume * (1.0 + pole.norm())) << pole.transpose();
+  }
+}
+
+TEST(BoundarySums, PolynomialElementsAreExact) {
+  const ElementTable<3> table = bezier_elements(geometry::box({2.0, 3.0, 5.0}));
+  const BoundarySums<3> sums = boundary_sums(table, Point3(1.0, 1.5, 2.5), SumScope::all, {});
+  EXPECT_TRUE(sums.exact);
+  EXPECT_NEAR(sums.value[L3::content], 90.0, 1e-13);
+  EXPECT_LT(sums.error[L3::content], 2e-13);
+}
+
+/// A thin spherical shell: its volume is what remains when nearly everything cancels.
+TEST(BoundarySums, ThinShellKeepsItsRelativeTolerance) {
+  ElementTable<3> table = bezier_elements(geometry::sphere(1.0));
+  const ElementTable<3> inner = bezier_elements(geometry::sphere(1.0 - 1e-6));
+  const std::size_t shift = table.nets.size();
+  table.nets.insert(table.nets.end(), inner.nets.begin(), inner.nets.end());
+  for (geometry::BezierElement<3> element : inner.elements) {
+    element.offset += shift;
+    element.orientation = -1;
+    table.elements.push_back(element);
+  }
+  Options options;
+  options.tolerance = 1e-8;
+  const BoundarySums<3> sums = boundary_sums(table, Point3(0.0, 0.0, 0.0), SumScope::all, options);
+  const double volume = 4.0 * pi / 3.0 * (3e-6 - 3e-12 + 1e-18);
+  EXPECT_NEAR(sums.value[L3::content] / 3.0, volume, 1e-9 * volume);
+  EXPECT_LE(std::abs(sums.value[L3::content] / 3.0 - volume), 2.0 * sums.error[L3::content] / 3.0);
+}
+
+TEST(BoundarySums, CuspsAreResolvedByBisection) {
+  // (t^2, t^3) on [-1, 1] has a cusp in its middle: speed |t| sqrt(4 + 9 t^2). Closed by the chord x = 1.
+  ElementTable<2> table;
+  table.nets = {1, -1, 1, -1.0 / 3.0, 1, 1, -1.0 / 3.0, -1, 1, 1, 1, 1, 1, 1, 1, 1, -1, 1};
+  table.elements.resize(2);
+  table.elements[0].degree = {3};
+  table.elements[1].degree = {1};
+  table.elements[1].offset = 12;
+  for (geometry::BezierElement<2>& element : table.elements) {
+    element.polynomial = true;
+    element.orientation = -1;
+  }
+  const BoundarySums<2> sums = boundary_sums(table, Point2(0.5, 0.0), SumScope::all, {});
+  const double length = 2.0 * (std::pow(13.0, 1.5) - 8.0) / 27.0 + 2.0;
+  EXPECT_NEAR(sums.value[L2::measure], length, 1e-12 * length);
+  EXPECT_LE(std::abs(sums.value[L2::measure] - length), 2.0 * sums.error[L2::measure]);
+  EXPECT_NEAR(sums.value[L2::content] / 2.0, 4.0 / 5.0, 1e-15);
+}
+
+TEST(BoundarySums, PlaneRegions) {
+  const ElementTable<2> circle = bezier_elements(geometry::disc(0.5, Point2(1.0, 1.0)));
+  const BoundarySums<2> sums = boundary_sums(circle, Point2(1.0, 1.0), SumScope::all, {});
+  EXPECT_NEAR(sums.value[L2::measure], pi, 1e-15);
+  EXPECT_NEAR(sums.value[L2::content] / 2.0, pi / 4.0, 4e-16);
+  EXPECT_NEAR(sums.value[L2::second] / 4.0, pi / 64.0, 1e-16);
+  EXPECT_NEAR(sums.value[L2::second_index(0, 1)], 0.0, 1e-16);
+}
+
+}  // namespace
+}  // namespace isorim::quadrature
