@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 
 #include "quadrature/element_sums.h"
+#include "quadrature/options.h"
 
 /// The one adaptive scheme behind every integral: the order is raised in the directions that need it, then the piece
 /// is bisected, until the estimated error meets the piece's allowance.
@@ -56,7 +57,7 @@ struct AdaptiveTotals {
   Values magnitude = Values::Zero();
   /// Points at which the integrand was evaluated.
   std::int64_t evaluations = 0;
-  /// Pieces given up at the greatest depth.
+  /// Pieces given up at the greatest depth or after the most bisections.
   std::int64_t unfinished = 0;
 
   void add(const Values& value, const Values& estimate) {
@@ -83,10 +84,9 @@ class AdaptiveIntegrator {
   using Values = typename Evaluator::Values;
   static constexpr int directions = Evaluator::directions;
 
-  /// The evaluator outlives the integrator. fixed_points > 0: that rule alone, the estimate from a rule with two more
-  /// points.
-  AdaptiveIntegrator(const Evaluator& evaluator, int fixed_points, int max_depth)
-      : evaluator_(evaluator), fixed_points_(fixed_points), max_depth_(max_depth) {}
+  /// Evaluator and options outlive the integrator. options.fixed_points > 0: that rule alone, the estimate from a rule
+  /// with two more points.
+  AdaptiveIntegrator(const Evaluator& evaluator, const Options& options) : evaluator_(evaluator), options_(options) {}
 
   /// One rule of `points` points in each direction over all pieces; no estimate of the error.
   AdaptiveTotals<Values> apply_rule(std::vector<Piece> pieces, int points) {
@@ -107,6 +107,7 @@ class AdaptiveIntegrator {
   /// Integrates over all pieces; the same pieces in the same order give the same bits.
   AdaptiveTotals<Values> integrate(std::vector<Piece> pieces) {
     totals_ = {};
+    bisections_left_ = static_cast<std::int64_t>(pieces.size()) * options_.max_bisections;
     work_ = std::move(pieces);
     std::reverse(work_.begin(), work_.end());
     while (!work_.empty()) next_batch();
@@ -130,9 +131,9 @@ class AdaptiveIntegrator {
   }
 
   Orders<directions> orders_for(const Piece& piece) const {
-    if (fixed_points_ == 0) return evaluator_.start_orders(piece);
+    if (options_.fixed_points == 0) return evaluator_.start_orders(piece);
     Orders<directions> orders;
-    orders.fill(fixed_points_);
+    orders.fill(options_.fixed_points);
     return orders;
   }
 
@@ -175,12 +176,12 @@ class AdaptiveIntegrator {
     std::array<Values, lanes> values;
     std::array<Values, lanes> others;
     evaluate_batch(batch, orders, values);
-    evaluate_batch(batch, shifted(orders, fixed_points_ > 0 ? 2 : -2), others);
+    evaluate_batch(batch, shifted(orders, options_.fixed_points > 0 ? 2 : -2), others);
     for (std::size_t i = 0; i < batch.size(); ++i) {
       Values difference = (values[i] - others[i]).abs();
       evaluator_.clear_exact(batch[i], orders, difference);
       State state{std::move(batch[i]), orders, values[i], difference};
-      if (fixed_points_ > 0 || excess(state, difference) <= 1.0) {
+      if (options_.fixed_points > 0 || excess(state, difference) <= 1.0) {
         totals_.add(state.value, state.difference);
       } else {
         refine(std::move(state));
@@ -193,10 +194,12 @@ class AdaptiveIntegrator {
     return (difference / evaluator_.allowance(state.piece, state.value)).maxCoeff();
   }
 
-  /// The estimate that belongs to `after`, reached from `before` by raising the order once.
-  static Values enlarged(const Values& before, const Values& after) {
+  /// The estimate that belongs to `after`, reached from `before` by raising the order once. Where both are rounding,
+  /// no gain is to be expected.
+  static Values enlarged(const Values& before, const Values& after, const Values& noise) {
     Values result = after;
     for (Eigen::Index k = 0; k < after.size(); ++k) {
+      if (after[k] <= noise[k]) continue;
       const double gain = before[k] > 0.0 ? std::min(after[k] / before[k], 0.9) : 0.0;
       result[k] *= std::max(1.0, gain / (1.0 - gain));
     }
@@ -206,54 +209,62 @@ class AdaptiveIntegrator {
   /// Raises the order where the error comes from while that helps; bisects otherwise.
   void refine(State state) {
     while (true) {
-      const std::array<double, directions> from = directional_excess(state);
-      const double before = excess(state, state.difference);
+      const std::array<Values, directions> from = directional_differences(state);
+      Values together = Values::Zero();
+      for (const Values& difference : from) together += difference;
+      if (excess(state, together) <= 1.0) return totals_.add(state.value, together);
+      std::array<double, directions> excesses;
+      for (std::size_t d = 0; d < directions; ++d) excesses[d] = excess(state, from[d]);
+      const double worst = *std::max_element(excesses.begin(), excesses.end());
       Orders<directions> raised = state.orders;
-      const double worst = *std::max_element(from.begin(), from.end());
+      // The directions left alone keep the error that they have been seen to cause.
+      Values kept = Values::Zero();
+      Values before = Values::Zero();
       for (std::size_t d = 0; d < directions; ++d) {
-        if (from[d] > 0.1 * std::max(worst, 1.0)) raised[d] = std::min(raised[d] + 4, largest_adaptive_order);
+        const bool raise = excesses[d] > 0.1 * worst && raised[d] < largest_adaptive_order;
+        if (raise) raised[d] = std::min(raised[d] + 4, largest_adaptive_order);
+        (raise ? before : kept) += from[d];
       }
       if (raised != state.orders) {
         const Values value = evaluate(state.piece, raised);
         Values difference = (value - state.value).abs();
         evaluator_.clear_exact(state.piece, raised, difference);
-        difference = enlarged(state.difference, difference);
+        difference = kept + enlarged(before, difference, evaluator_.noise(state.piece, value));
         state = {std::move(state.piece), raised, value, difference};
         const double after = excess(state, state.difference);
         if (after <= 1.0) return totals_.add(state.value, state.difference);
-        if (after < 0.03 * before) continue;
+        if (after < 0.03 * worst) continue;
       }
-      return bisect(state, from);
+      return bisect(state, excesses);
     }
   }
 
-  /// How much of the excess each direction alone causes: the order lowered by two there.
-  std::array<double, directions> directional_excess(const State& state) {
-    std::array<double, directions> from;
+  /// The difference that each direction alone causes: the order lowered by two there.
+  std::array<Values, directions> directional_differences(const State& state) {
+    std::array<Values, directions> from;
     for (std::size_t d = 0; d < directions; ++d) {
       Orders<directions> lowered = state.orders;
       lowered[d] = std::max(1, lowered[d] - 2);
-      Values difference = (evaluate(state.piece, lowered) - state.value).abs();
-      evaluator_.clear_exact(state.piece, state.orders, difference);
-      from[d] = excess(state, difference);
+      from[d] = (evaluate(state.piece, lowered) - state.value).abs();
+      evaluator_.clear_exact(state.piece, state.orders, from[d]);
     }
     return from;
   }
 
-  void bisect(const State& state, const std::array<double, directions>& from) {
-    if (state.piece.depth >= max_depth_) {
+  void bisect(const State& state, const std::array<double, directions>& excesses) {
+    if (state.piece.depth >= options_.max_depth || --bisections_left_ < 0) {
       ++totals_.unfinished;
       return totals_.add(state.value, state.difference);
     }
-    const auto direction = static_cast<int>(std::max_element(from.begin(), from.end()) - from.begin());
+    const auto direction = static_cast<int>(std::max_element(excesses.begin(), excesses.end()) - excesses.begin());
     std::pair<Piece, Piece> halves = evaluator_.split(state.piece, direction);
     work_.push_back(std::move(halves.second));
     work_.push_back(std::move(halves.first));
   }
 
   const Evaluator& evaluator_;
-  int fixed_points_;
-  int max_depth_;
+  const Options& options_;
+  std::int64_t bisections_left_ = 0;
   std::vector<Piece> work_;
   AdaptiveTotals<Values> totals_;
 };

@@ -80,7 +80,7 @@ class SumsEvaluator {
   void evaluate(std::span<const Piece* const> pieces, const Orders<directions>& orders,
                 std::span<Values> values) const {
     ElementBatch<Dim> batch = batch_of(*pieces.front());
-    for (const Piece* piece : pieces) batch.nets[static_cast<std::size_t>(batch.size++)] = piece->net;
+    for (const Piece* piece : pieces) batch.nets[static_cast<std::size_t>(batch.size++)] = piece->net();
     sum_over_elements(batch, pole_, orders, values.first(pieces.size()));
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       values[i].template tail<Layout::count - 1>() *= pieces[i]->element->orientation;
@@ -95,12 +95,16 @@ class SumsEvaluator {
     const double measure = value[Layout::measure];
     const double share = 0.5 * std::ldexp(1.0 / static_cast<double>(scales_.elements), -piece.depth) +
                          0.5 * measure / scales_.sums[Layout::measure];
-    Values allowed = target_ * share;
+    return (target_ * share).max(noise(piece, value));
+  }
+
+  Values noise(const Piece&, const Values& value) const {
+    Values noise;
     for (int k = 0; k < Layout::count; ++k) {
-      const double rounding = difference_noise * measure * std::pow(scales_.radius, power_of_distance<Dim>(k));
-      allowed[k] = std::max({allowed[k], rounding, std::numeric_limits<double>::min()});
+      const double scale = value[Layout::measure] * std::pow(scales_.radius, power_of_distance<Dim>(k));
+      noise[k] = std::max(difference_noise * scale, std::numeric_limits<double>::min());
     }
-    return allowed;
+    return noise;
   }
 
   void clear_exact(const Piece& piece, const Orders<directions>& orders, Values& difference) const {
@@ -157,7 +161,7 @@ Scales<Dim> measure_scales(const geometry::ElementTable<Dim>& table, const geome
   const SumsEvaluator<Dim> evaluator(pole, scales, SumScope::measure_only, options.tolerance);
   constexpr int low_order = 3;
   const auto body = [&](std::span<const geometry::BezierElement<Dim>> elements) {
-    return AdaptiveIntegrator(evaluator, 0, 0).apply_rule(pieces_of(table, elements), low_order);
+    return AdaptiveIntegrator(evaluator, options).apply_rule(pieces_of(table, elements), low_order);
   };
   scales.sums = sum_in_tasks(table, options, {}, body).sum;
   return scales;
@@ -186,8 +190,7 @@ BoundarySums<Dim> boundary_sums(const geometry::ElementTable<Dim>& table, const 
   for (int attempt = 0; attempt < 3; ++attempt) {
     const SumsEvaluator<Dim> evaluator(pole, scales, scope, options.tolerance);
     const auto body = [&](std::span<const geometry::BezierElement<Dim>> elements) {
-      return AdaptiveIntegrator(evaluator, options.fixed_points, options.max_depth)
-          .integrate(pieces_of(table, elements));
+      return AdaptiveIntegrator(evaluator, options).integrate(pieces_of(table, elements));
     };
     totals = sum_in_tasks(table, options, options.progress, body);
     const double aimed_at = std::abs(scales.sums[Layout::content]);

@@ -26,10 +26,10 @@ double weight_ratio(const ElementPiece<Dim>& piece, int direction) {
   double ratio = 1.0;
   for (int line = 0; line < lines; ++line) {
     const int start = direction == 0 ? line * points : line;
-    double smallest = piece.net[start * (Dim + 1) + Dim];
+    double smallest = piece.net()[start * (Dim + 1) + Dim];
     double largest = smallest;
     for (int i = 1; i < points; ++i) {
-      const double weight = piece.net[(start + i * stride) * (Dim + 1) + Dim];
+      const double weight = piece.net()[(start + i * stride) * (Dim + 1) + Dim];
       smallest = std::min(smallest, weight);
       largest = std::max(largest, weight);
     }
@@ -55,24 +55,22 @@ template <int Dim>
 std::pair<ElementPiece<Dim>, ElementPiece<Dim>> bisect(const ElementPiece<Dim>& piece, int direction) {
   const std::array<int, Dim - 1> degrees = degrees_of(*piece.element);
   const auto size = static_cast<std::size_t>(piece.element->control_point_count() * (Dim + 1));
-  auto [first, second] = geometry::subdivide({piece.net, size}, Dim + 1, degrees, direction);
-  const auto make = [&](std::vector<double> net) {
-    ElementPiece<Dim> half{piece.element, nullptr, piece.element_depth + 1, piece.depth + 1, std::move(net)};
-    half.net = half.own_net.data();
-    return half;
-  };
-  return {make(std::move(first)), make(std::move(second))};
+  auto [first, second] = geometry::subdivide({piece.net(), size}, Dim + 1, degrees, direction);
+  const int depth = piece.depth + 1;
+  return {ElementPiece<Dim>{piece.element, piece.element_net, std::move(first), depth},
+          ElementPiece<Dim>{piece.element, piece.element_net, std::move(second), depth}};
 }
 
 template <int Dim>
 Orders<Dim - 1> expected_orders(const ElementPiece<Dim>& piece, double tolerance) {
   constexpr double constant_weights = 1.0 + 1e-14;
   Orders<Dim - 1> orders;
-  for (int d = 0; d < Dim - 1; ++d) {
-    const int degree = piece.element->degree[static_cast<std::size_t>(d)];
-    const double ratio = piece.element->polynomial ? 1.0 : weight_ratio(piece, d);
-    orders[static_cast<std::size_t>(d)] =
-        ratio <= constant_weights ? exact_order<Dim>(degree) : rational_order(ratio, degree, tolerance);
+  for (std::size_t d = 0; d < Dim - 1; ++d) {
+    const int degree = piece.element->degree[d];
+    orders[d] = exact_order<Dim>(degree);
+    if (piece.element->polynomial) continue;
+    const double ratio = weight_ratio(piece, static_cast<int>(d));
+    orders[d] = ratio <= constant_weights ? orders[d] + 2 : rational_order(ratio, degree, tolerance);
   }
   return orders;
 }

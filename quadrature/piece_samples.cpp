@@ -75,7 +75,7 @@ void sample_piece(const ElementPiece<Dim>& piece, const Orders<Dim - 1>& orders,
   }
   samples.points.resize(Dim, count);
   samples.normals.resize(Dim, count);
-  const Eigen::Map<const geometry::HomogeneousPoints<Dim>> net(piece.net, Dim + 1,
+  const Eigen::Map<const geometry::HomogeneousPoints<Dim>> net(piece.net(), Dim + 1,
                                                                piece.element->control_point_count());
   for (Eigen::Index k = 0; k < count; ++k) {
     Orders<Dim - 1> node;

@@ -22,13 +22,15 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// Differences of two rules below this, relative to the integral of |f|, are rounding.
-constexpr double difference_noise = 8.0 * epsilon;
+/// Differences of two rules below this, relative to the scale of rounding, are rounding.
+constexpr double difference_noise = 4.0 * epsilon;
 
-/// The integral and the integral of the absolute value, which tells how much cancels.
-using Values = Eigen::Array<double, 2, 1>;
+/// The integral; the integral of the absolute value, which tells how much cancels; and the same with the flux of the
+/// rays replaced by its largest possible size, to which its rounding is relative.
+using Values = Eigen::Array<double, 3, 1>;
 constexpr int signed_value = 0;
 constexpr int absolute_value = 1;
+constexpr int rounding_scale = 2;
 
 /// Integrands are functions of which nothing is known: no direction starts below this.
 constexpr int least_order_for_functions = 8;
@@ -36,9 +38,9 @@ constexpr int least_order_for_functions = 8;
 /// Of the first pass, which tells how large the integral is.
 constexpr int low_order = 4;
 
-/// What the tolerance is relative to: the integral, or a thousandth of the integral of |f| where it nearly vanishes.
+/// What the tolerance is relative to: the integral, or a hundredth of the integral of |f| where it nearly vanishes.
 double reference_size(const Values& sum) {
-  return std::max(std::abs(sum[signed_value]), 1e-3 * sum[absolute_value]);
+  return std::max(std::abs(sum[signed_value]), 0.01 * sum[absolute_value]);
 }
 
 template <int Dim>
@@ -54,9 +56,10 @@ class IntegrandCall {
  public:
   IntegrandCall(const Integrand<Dim>& integrand, double target) : integrand_(integrand), target_(target) {}
 
-  /// Sum of weights[i] f(points_i), and of its absolute values. Throws NumericalError at a value that is not finite.
+  /// Sum of weights[i] f(points_i), of its absolute values, and of those of scales[i] f(points_i). Throws
+  /// NumericalError at a value that is not finite.
   Values weighted_sum(const geometry::Points<Dim>& points, const geometry::Points<Dim>& normals,
-                      std::span<const double> weights) const {
+                      std::span<const double> weights, std::span<const double> scales) const {
     static thread_local std::vector<double> values;
     values.resize(weights.size());
     integrand_(points, normals, values);
@@ -68,16 +71,21 @@ class IntegrandCall {
       }
       sum[signed_value] += weights[i] * values[i];
       sum[absolute_value] += std::abs(weights[i] * values[i]);
+      sum[rounding_scale] += scales[i] * std::abs(values[i]);
     }
     return sum;
   }
 
   Values allowance(double share, const Values& value) const {
-    Values allowed;
-    allowed[signed_value] =
-        std::max({target_ * share, difference_noise * value[absolute_value], std::numeric_limits<double>::min()});
-    allowed[absolute_value] = std::numeric_limits<double>::max();
+    Values allowed = noise(value);
+    allowed[signed_value] = std::max(allowed[signed_value], target_ * share);
     return allowed;
+  }
+
+  Values noise(const Values& value) const {
+    Values noise = Values::Constant(std::numeric_limits<double>::max());
+    noise[signed_value] = std::max(difference_noise * value[rounding_scale], std::numeric_limits<double>::min());
+    return noise;
   }
 
  private:
@@ -87,12 +95,11 @@ class IntegrandCall {
 
 /// The order to begin with: what the element's map needs for the moments (the integrand adds to it, but seldom more
 /// than the error estimate then asks for).
-template <int Dim, std::size_t Directions>
-void set_element_orders(const ElementPiece<Dim>& piece, double tolerance, std::array<int, Directions>& orders) {
-  const Orders<Dim - 1> expected = expected_orders(piece, tolerance);
-  for (std::size_t d = 0; d < Dim - 1; ++d) {
-    orders[d] = std::max(std::min(expected[d] + 1, largest_adaptive_order), least_order_for_functions);
-  }
+template <int Dim>
+Orders<Dim - 1> element_orders(const ElementPiece<Dim>& piece, double tolerance) {
+  Orders<Dim - 1> orders = expected_orders(piece, tolerance);
+  for (int& order : orders) order = std::clamp(order + 1, least_order_for_functions, largest_adaptive_order);
+  return orders;
 }
 
 /// int f dS over pieces of the boundary.
@@ -110,11 +117,7 @@ class BoundaryEvaluator {
 
   static Piece make_piece(ElementPiece<Dim> piece) { return piece; }
 
-  Orders<directions> start_orders(const Piece& piece) const {
-    Orders<directions> orders;
-    set_element_orders(piece, tolerance_, orders);
-    return orders;
-  }
+  Orders<directions> start_orders(const Piece& piece) const { return element_orders(piece, tolerance_); }
   bool same_kind(const Piece&, const Piece&) const { return false; }
 
   void evaluate(std::span<const Piece* const> pieces, const Orders<directions>& orders,
@@ -128,7 +131,7 @@ class BoundaryEvaluator {
       weights[static_cast<std::size_t>(i)] = measure;
       if (measure > 0.0) samples.normals.col(i) /= measure;
     }
-    values.front() = call_.weighted_sum(samples.points, samples.normals, weights);
+    values.front() = call_.weighted_sum(samples.points, samples.normals, weights, weights);
   }
 
   std::pair<Piece, Piece> split(const Piece& piece, int direction) const { return bisect(piece, direction); }
@@ -136,6 +139,7 @@ class BoundaryEvaluator {
   Values allowance(const Piece& piece, const Values& value) const {
     return call_.allowance(std::ldexp(1.0 / static_cast<double>(elements_), -piece.depth), value);
   }
+  Values noise(const Piece&, const Values& value) const { return call_.noise(value); }
   void clear_exact(const Piece&, const Orders<directions>&, Values&) const {}
 
  private:
@@ -166,8 +170,9 @@ class ConeEvaluator {
   static Piece make_piece(ElementPiece<Dim> piece) { return {std::move(piece), {0.0, 1.0}}; }
 
   Orders<directions> start_orders(const Piece& piece) const {
+    const Orders<Dim - 1> on_element = element_orders<Dim>(piece, tolerance_);
     Orders<directions> orders;
-    set_element_orders(piece, tolerance_, orders);
+    std::copy(on_element.begin(), on_element.end(), orders.begin());
     orders[Dim - 1] = least_order_for_functions;
     return orders;
   }
@@ -178,26 +183,30 @@ class ConeEvaluator {
     static thread_local PieceSamples<Dim> samples;
     static thread_local geometry::Points<Dim> points;
     static thread_local std::vector<double> weights;
+    static thread_local std::vector<double> scales;
     const Piece& piece = *pieces.front();
-    Orders<Dim - 1> element_orders;
-    std::copy_n(orders.begin(), Dim - 1, element_orders.begin());
-    sample_piece<Dim>(piece, element_orders, samples);
+    Orders<Dim - 1> on_element;
+    std::copy_n(orders.begin(), Dim - 1, on_element.begin());
+    sample_piece<Dim>(piece, on_element, samples);
     const Rule& rule = gauss_legendre(orders[Dim - 1]);
     const Eigen::Index rays = samples.points.cols();
     points.resize(Dim, rays * rule.size());
     weights.resize(static_cast<std::size_t>(points.cols()));
+    scales.resize(weights.size());
     for (int k = 0; k < rule.size(); ++k) {
       const auto node = static_cast<std::size_t>(k);
       const double t = piece.radial.first + rule.nodes[node] * piece.radial.length();
       const double radial_weight = rule.weights[node] * piece.radial.length() * std::pow(t, Dim - 1);
       for (Eigen::Index i = 0; i < rays; ++i) {
         const geometry::Vector<Dim> d = samples.points.col(i) - pole_;
-        points.col(k * rays + i) = pole_ + t * d;
-        weights[static_cast<std::size_t>(k * rays + i)] = radial_weight * d.dot(samples.normals.col(i));
+        const Eigen::Index point = k * rays + i;
+        points.col(point) = pole_ + t * d;
+        weights[static_cast<std::size_t>(point)] = radial_weight * d.dot(samples.normals.col(i));
+        scales[static_cast<std::size_t>(point)] = radial_weight * d.norm() * samples.normals.col(i).norm();
       }
     }
     static const geometry::Points<Dim> no_normals(Dim, 0);
-    values.front() = call_.weighted_sum(points, no_normals, weights);
+    values.front() = call_.weighted_sum(points, no_normals, weights, scales);
   }
 
   std::pair<Piece, Piece> split(const Piece& piece, int direction) const {
@@ -206,25 +215,20 @@ class ConeEvaluator {
       // Named, so that the pair moves them: the net of a copy would lie in the original.
       return {Piece{std::move(first), piece.radial}, Piece{std::move(second), piece.radial}};
     }
-    std::pair<Piece, Piece> halves{copy(piece), copy(piece)};
-    halves.first.radial.last = halves.second.radial.first = piece.radial.middle();
-    return halves;
+    Piece first = piece;
+    ++first.depth;
+    Piece second = first;
+    first.radial.last = second.radial.first = piece.radial.middle();
+    return {std::move(first), std::move(second)};
   }
 
   Values allowance(const Piece& piece, const Values& value) const {
     return call_.allowance(std::ldexp(1.0 / static_cast<double>(elements_), -piece.depth), value);
   }
+  Values noise(const Piece&, const Values& value) const { return call_.noise(value); }
   void clear_exact(const Piece&, const Orders<directions>&, Values&) const {}
 
  private:
-  /// The same cone, one level deeper, with a net of its own if it has one.
-  static Piece copy(const Piece& piece) {
-    Piece result = piece;
-    if (!result.own_net.empty()) result.net = result.own_net.data();
-    ++result.depth;
-    return result;
-  }
-
   IntegrandCall<Dim> call_;
   geometry::Point<Dim> pole_;
   std::size_t elements_;
@@ -261,10 +265,10 @@ class Integration {
   static constexpr std::size_t elements_per_task = 4;
 
   IntegralResult result(const AdaptiveTotals<Values>& totals) const {
-    const double rounding = 4.0 * epsilon * totals.sum[absolute_value];
+    const double rounding = 2.0 * epsilon * totals.sum[rounding_scale];
     IntegralResult result{{totals.sum[signed_value], totals.error[signed_value] + rounding}, totals.evaluations, {}};
     const double allowed = options_.tolerance * reference_size(totals.sum);
-    const double noise = rounding + difference_noise * totals.sum[absolute_value];
+    const double noise = rounding + difference_noise * totals.sum[rounding_scale];
     result.status = judge(result.integral.error, allowed, noise, options_);
     return result;
   }
@@ -286,7 +290,7 @@ class Integration {
       for (std::size_t e = task * elements_per_task; e < std::min(count, (task + 1) * elements_per_task); ++e) {
         pieces.push_back(Evaluator<Dim>::make_piece(whole_element(table_, table_.elements[e])));
       }
-      AdaptiveIntegrator<Evaluator<Dim>> integrator(evaluator, options_.fixed_points, options_.max_depth);
+      AdaptiveIntegrator<Evaluator<Dim>> integrator(evaluator, options_);
       totals[task] = step(integrator, std::move(pieces));
     };
     parallel_for(tasks, options_.threads, body, progress);

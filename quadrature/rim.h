@@ -46,7 +46,7 @@ geometry::Point<Dim> default_pole(const geometry::ElementTable<Dim>& table);
 
 /// int_Omega f over the domain that the closed boundary encloses.
 ///
-/// The tolerance is relative to the integral, or to a thousandth of the integral of |f| where cancellation makes that
+/// The tolerance is relative to the integral, or to a hundredth of the integral of |f| where cancellation makes that
 /// larger. The integrand is met on the rays from the pole to the boundary; where the domain is not star-shaped about
 /// the pole these leave it, so the integrand must be defined there too. Throws NumericalError, naming the point and
 /// whether the boundary is star-shaped about the pole, if a value is not finite.

@@ -6,8 +6,10 @@
 // fused multiply-adds on independent registers) that its arithmetic is. MillionElements: 10^6 elements with error
 // estimates on one thread and on two; peak_MiB is the process's largest memory so far.
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -29,24 +31,27 @@ using namespace isorim;
 #define ISORIM_PEAK_TARGET
 #endif
 
+/// Keeps the compiler from knowing the operands and from dropping the results.
+volatile double opaque = 0.999999;
+
 /// Operations (a fused multiply-add counts as two) a second of one core at its best.
 ISORIM_PEAK_TARGET double peak_operations() {
   using Register = double __attribute__((vector_size(32)));
   constexpr int chains = 12;
   constexpr int steps = 200000;
-  std::array<double, 4> start{1.0, 1.1, 1.2, 1.3};
-  Register factor = {0.999999, 0.999998, 0.999997, 0.999996};
+  const double value = opaque;
+  const Register factor = {value, value, value, value};
   double best = 0.0;
   for (int repeat = 0; repeat < 20; ++repeat) {
     Register sums[chains];
-    for (Register& sum : sums) sum = Register{start[0], start[1], start[2], start[3]};
-    benchmark::DoNotOptimize(factor);
+    for (int chain = 0; chain < chains; ++chain) sums[chain] = factor * (1.0 + chain);
     const auto begin = std::chrono::steady_clock::now();
     for (int step = 0; step < steps; ++step) {
       for (int chain = 0; chain < chains; ++chain) sums[chain] = sums[chain] * factor + factor;
     }
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-    for (Register& sum : sums) benchmark::DoNotOptimize(sum);
+    for (const Register& sum : sums) opaque = sum[0] + sum[1] + sum[2] + sum[3];
+    opaque = value;
     best = std::max(best, 8.0 * chains * steps / elapsed.count());
   }
   return best;

@@ -83,7 +83,8 @@ TEST(BoundarySums, EstimateCoversTheTrueError) {
       const BoundarySums<3> sums = boundary_sums(solid.table, solid.pole, SumScope::all, options);
       for (int k = 0; k < L3::count; ++k) {
         const double error = std::abs(sums.value[k] - solid.sums[k]);
-        EXPECT_LE(error, 2.0 * sums.error[k] + 2e-15 * size) << solid.name << " " << k << " " << tolerance;
+        EXPECT_LE(error, 2.0 * sums.error[k] + 2e-15 * size)
+            << solid.name << " sum " << k << " tolerance " << tolerance << " " << sums.value[k];
       }
     }
   }

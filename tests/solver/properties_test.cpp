@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include <Eigen/LU>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
