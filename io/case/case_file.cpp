@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <type_traits>
 
 #include <fmt/format.h>
+
+#include "geometry/errors.h"
+#include "io/expression.h"
 
 namespace isorim::io {
 namespace {
@@ -89,6 +91,22 @@ void check_convergence(const CaseKeys& keys, int dim, Complaints& complaints) {
   }
 }
 
+/// Every integrand must parse.
+void check_integrands(const CaseKeys& keys, int dim, Complaints& complaints) {
+  for (const IntegralKeys& integral : keys.integral) {
+    const auto scope = integral.over == IntegralOver::domain ? ExpressionScope::domain : ExpressionScope::boundary;
+    try {
+      if (dim == 2) {
+        compile_integrand<2>(integral.integrand, scope);
+      } else {
+        compile_integrand<3>(integral.integrand, scope);
+      }
+    } catch (const InputError& error) {
+      complaints.add(integral.where.key("integrand", integral.where.place), error.what());
+    }
+  }
+}
+
 void check_poles(const CaseKeys& keys, int dim, Complaints& complaints) {
   const auto check = [&](const std::optional<Coordinates>& pole) {
     if (!pole || pole->values.empty() || static_cast<int>(pole->values.size()) == dim) return;
@@ -96,6 +114,26 @@ void check_poles(const CaseKeys& keys, int dim, Complaints& complaints) {
   };
   check(keys.properties.pole);
   for (const IntegralKeys& integral : keys.integral) check(integral.pole);
+}
+
+/// The section [geometry] is there and nothing is wrong with its keys.
+bool has_sound_geometry(const Value& root) {
+  const Value* geometry = root.find("geometry");
+  GeometryKeys keys;
+  Complaints complaints;
+  return geometry && KeyType<GeometryKeys>::read(*geometry, keys, {}, {geometry->place, "geometry"}, complaints);
+}
+
+void build_shape(CaseFile& file, int dim, Complaints& complaints) {
+  try {
+    if (dim == 2) {
+      file.shape = build_boundary<2>(file.keys.geometry);
+    } else {
+      file.shape = build_boundary<3>(file.keys.geometry);
+    }
+  } catch (const InputError& error) {
+    complaints.add(error.what());
+  }
 }
 
 }  // namespace
@@ -106,40 +144,29 @@ std::vector<std::string> property_names(int dim) {
   return {boundary, domain, "centroid", "inertia", "principal_moments", "mass", "closure_defect"};
 }
 
-int dimension(const GeometryKeys& geometry) {
-  return std::visit(
-      [](const auto& shape) {
-        using Keys = std::decay_t<decltype(shape)>;
-        if constexpr (std::is_same_v<Keys, NurbsKeys>) return shape.patches.empty() ? 2 : 3;
-        const bool plane = std::is_same_v<Keys, CircleKeys> || std::is_same_v<Keys, EllipseKeys> ||
-                           std::is_same_v<Keys, EllipseArcKeys> || std::is_same_v<Keys, RectangleKeys> ||
-                           std::is_same_v<Keys, PolygonKeys> || std::is_same_v<Keys, RegionKeys>;
-        return plane ? 2 : 3;
-      },
-      geometry);
-}
-
-CaseKeys read_keys(const Value& root) {
-  CaseKeys keys;
+CaseFile read_case(const Value& root, const std::filesystem::path& path) {
+  CaseFile file;
+  file.path = path;
+  file.resolved = to_toml(root);
   Complaints complaints;
-  const bool geometry_is_known = schema<CaseKeys>().read(root, keys, {root.place, ""}, complaints);
-  if (geometry_is_known || root.find("geometry")) {
-    const int dim = dimension(keys.geometry);
-    if (geometry_is_known) {
-      check_integrals(keys, dim, complaints);
-      check_expectations(keys, dim, complaints);
-      check_convergence(keys, dim, complaints);
-      check_poles(keys, dim, complaints);
-    }
+  schema<CaseKeys>().read(root, file.keys, {root.place, ""}, complaints);
+  if (has_sound_geometry(root)) {
+    const int dim = dimension(file.keys.geometry);
+    check_integrals(file.keys, dim, complaints);
+    check_integrands(file.keys, dim, complaints);
+    check_expectations(file.keys, dim, complaints);
+    check_convergence(file.keys, dim, complaints);
+    check_poles(file.keys, dim, complaints);
+    build_shape(file, dim, complaints);
   }
   complaints.throw_if_any();
-  return keys;
+  return file;
 }
 
 CaseFile read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
   Value root = read_toml(path);
   for (const std::string& assignment : overrides) apply_override(root, assignment);
-  return {path, read_keys(root), to_toml(root)};
+  return read_case(root, path);
 }
 
 }  // namespace isorim::io

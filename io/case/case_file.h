@@ -4,9 +4,11 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "io/case/schema.h"
+#include "io/case/shape_builder.h"
 #include "io/case/shape_keys.h"
 
 /// A case file, read and validated: the keys as they stand there with their defaults filled in. The declarations are
@@ -80,9 +82,13 @@ struct CaseKeys {
   KeyPlace where;
 };
 
+using AnyBoundary = std::variant<BuiltBoundary<2>, BuiltBoundary<3>>;
+
 struct CaseFile {
   std::filesystem::path path;
   CaseKeys keys;
+  /// The shape that `keys.geometry` describes.
+  AnyBoundary shape;
   /// The case with its overrides, as TOML.
   std::string resolved;
 
@@ -92,16 +98,13 @@ struct CaseFile {
   std::string title() const { return keys.title.empty() ? name() : keys.title; }
 };
 
-/// Validates a tree of values. Throws InputError with all complaints, one a line, each with file and line, key, what
-/// was found and what was expected. `geometry` is not built here, so what only its construction tells (knots against
-/// points, loops that are open) comes from build_boundary().
-CaseKeys read_keys(const Value& root);
-
-/// Reads a case file, puts the overrides ("path.to.key=value") into it and validates it. Throws InputError.
+/// Reads a case file, puts the overrides ("path.to.key=value") into it, validates it and builds its shape. Throws
+/// InputError with all complaints at once, one a line, each with file and line, key, what was found and what was
+/// expected. (That loops cross or that a boundary is open shows only later, in build_model().)
 CaseFile read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
 
-/// 2 if the case is about a region of the plane, 3 if about a solid.
-int dimension(const GeometryKeys& geometry);
+/// The same for a case that is at hand as a tree of values.
+CaseFile read_case(const Value& root, const std::filesystem::path& path);
 
 /// The quantities that [expect] and [convergence] may name besides the integrals, in dimension `dim`.
 std::vector<std::string> property_names(int dim);

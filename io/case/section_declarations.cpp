@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -65,7 +66,13 @@ const Schema<IntegralKeys>& schema<IntegralKeys>() {
                {.text = "Instead of that of [properties].", .range = {.least = 0, .most = 0.1, .least_is_open = true}})
           .key("pole", &IntegralKeys::pole, {.text = "Over a domain: instead of that of [properties]."})
           .check([](const IntegralKeys& integral, const KeyPlace& where, Complaints& complaints) {
-            if (integral.name.empty()) complaints.add(where, "the name is empty");
+            const bool is_plain = std::all_of(integral.name.begin(), integral.name.end(), [](char c) {
+              return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
+            });
+            if (integral.name.empty() || !is_plain) {
+              complaints.add(where.key("name", where.place),
+                             fmt::format("found \"{}\"; expected letters, digits, _ and -", integral.name));
+            }
             if (integral.pole && integral.over == IntegralOver::boundary) {
               complaints.add(integral.pole->where, "an integral over a boundary has no pole");
             }

@@ -205,7 +205,9 @@ Schema<LoftKeys> loft_schema() {
                                "insertion.",
                        .presence = required})
                  .key("degree", &LoftKeys::degree,
-                      {.text = "Across the sections; at most their number minus 1.", .range = Range::between(1, 30)}))
+                      {.text = "Across the sections; lowered to their number minus 1.", .range = Range::between(1, 30)})
+                 .choice("ends", &LoftKeys::ends, {{"open", SweepEnds::open}, {"caps", SweepEnds::caps}},
+                         {.text = "Of closed sections: left open, or the first and last closed by flat caps."}))
       .check([](const LoftKeys& loft, const KeyPlace& where, Complaints& complaints) {
         complain_few(loft.sections.size(), 2, "sections", where, complaints);
       });
@@ -388,7 +390,10 @@ const Schema<RevolveKeys>& schema<RevolveKeys>() {
               .key("angle", &RevolveKeys::angle,
                    {.text = "By the right hand about the axis.",
                     .unit = "degrees",
-                    .range = {.least = 0, .most = 360, .least_is_open = true}}))
+                    .range = {.least = 0, .most = 360, .least_is_open = true}})
+              .choice("ends", &RevolveKeys::ends, {{"open", SweepEnds::open}, {"caps", SweepEnds::caps}},
+                      {.text = "Of a profile that turns by less than 360 degrees: left open, or closed by flat caps "
+                               "into a solid (a profile that ends on the axis is closed along it)."}))
           .check([](const RevolveKeys& revolve, const KeyPlace& where, Complaints& complaints) {
             check_profile(!revolve.profile.empty(), revolve.region.has_value(), where, complaints);
           });

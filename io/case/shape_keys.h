@@ -164,12 +164,16 @@ struct AxisKeys {
   KeyPlace where;
 };
 
+/// What becomes of the first and last place of a swept profile.
+enum class SweepEnds { open, caps };
+
 /// Exactly one of `profile` and `region`.
 struct RevolveKeys : ShapeKeys {
   std::vector<CurveKeys> profile;
   std::optional<PlaneRegionKeys> region;
   AxisKeys axis;
   double angle = 360.0;
+  SweepEnds ends = SweepEnds::open;
 };
 
 /// Exactly one of `profile` and `region`.
@@ -186,6 +190,7 @@ struct RuledKeys : ShapeKeys {
 struct LoftKeys : ShapeKeys {
   std::vector<CurveKeys> sections;
   int degree = 3;
+  SweepEnds ends = SweepEnds::open;
 };
 
 struct DiscKeys : ShapeKeys {

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry/boundary.h"
+#include "io/case/shape_keys.h"
+
+namespace isorim::io {
+
+/// What the author of a case said a loop is.
+struct LoopClaim {
+  /// Index of a patch of the loop.
+  int patch = 0;
+  LoopRole role = LoopRole::any;
+  KeyPlace where;
+};
+
+template <int Dim>
+struct BuiltBoundary {
+  /// As the case gives it: not oriented yet, patch names unique.
+  geometry::Boundary<Dim> boundary;
+  std::vector<LoopClaim> claims;
+};
+
+/// 2 if the shape is a region of the plane, 3 if it is a solid.
+int dimension(const GeometryKeys& keys);
+
+/// Builds the exact boundary of a shape of the plane (Dim = 2) or of space (Dim = 3); Dim must be the shape's
+/// dimension(). Throws InputError with all complaints at once, each with file, line and key: knots that contradict
+/// themselves or the points, wrong numbers of coordinates, loops that are open or without area, an axis that cuts a
+/// profile, ...
+template <int Dim>
+BuiltBoundary<Dim> build_boundary(const GeometryKeys& keys);
+
+}  // namespace isorim::io
