@@ -1,0 +1,261 @@
+#include "io/results/hdf5.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include "geometry/errors.h"
+#include "io/atomic_file.h"
+
+namespace isorim::io {
+namespace {
+
+/// A handle of the library, closed at the end of its scope. Throws when the library gives none.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t), std::string_view what) : id_(id), close_(close) {
+    if (id_ < 0) throw InputError(fmt::format("HDF5 failed: {}", what));
+  }
+  ~Handle() { close_(id_); }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor): it is one for the C functions
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/// Keeps the library from printing.
+class SilentErrors {
+ public:
+  SilentErrors() {
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~SilentErrors() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+  SilentErrors(const SilentErrors&) = delete;
+  SilentErrors& operator=(const SilentErrors&) = delete;
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+void check(herr_t status, std::string_view what) {
+  if (status < 0) throw InputError(fmt::format("HDF5 failed: {}", what));
+}
+
+template <class T>
+hid_t native_type();
+template <>
+hid_t native_type<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+template <>
+hid_t native_type<std::int64_t>() {
+  return H5T_NATIVE_INT64;
+}
+template <>
+hid_t native_type<std::int32_t>() {
+  return H5T_NATIVE_INT32;
+}
+template <>
+hid_t native_type<std::int8_t>() {
+  return H5T_NATIVE_INT8;
+}
+
+Handle open_group(hid_t parent, const std::string& name) {
+  return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "making group " + name};
+}
+
+/// A dataset of the given shape; rank 0 is a single number.
+template <class T>
+void write_dataset(hid_t group, const std::string& name, const std::vector<T>& values,
+                   const std::vector<hsize_t>& shape) {
+  const Handle space(
+      shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+      H5Sclose, "space of " + name);
+  const Handle set(H5Dcreate2(group, name.c_str(), native_type<T>(), space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                   H5Dclose, "making dataset " + name);
+  if (values.empty()) return;
+  check(H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "writing dataset " + name);
+}
+
+template <class T>
+void write_attribute(hid_t object, const std::string& name, T value) {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "space of " + name);
+  const Handle attribute(H5Acreate2(object, name.c_str(), native_type<T>(), space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                         "making attribute " + name);
+  check(H5Awrite(attribute, native_type<T>(), &value), "writing attribute " + name);
+}
+
+/// UTF-8 of variable length.
+hid_t make_text_type() {
+  const hid_t type = H5Tcopy(H5T_C_S1);
+  check(H5Tset_size(type, H5T_VARIABLE), "text type");
+  check(H5Tset_cset(type, H5T_CSET_UTF8), "text type");
+  return type;
+}
+
+void write_text_attribute(hid_t object, const std::string& name, std::string_view text) {
+  const Handle type(make_text_type(), H5Tclose, "text type");
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "space of " + name);
+  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                         "making attribute " + name);
+  const std::string copy(text);
+  const char* pointer = copy.c_str();
+  check(H5Awrite(attribute, type, &pointer), "writing attribute " + name);
+}
+
+/// A list of texts, or a single one if `texts` has one and the rank is 0.
+void write_texts(hid_t group, const std::string& name, const std::vector<std::string>& texts,
+                 const std::vector<hsize_t>& shape) {
+  const Handle type(make_text_type(), H5Tclose, "text type");
+  const Handle space(
+      shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+      H5Sclose, "space of " + name);
+  const Handle set(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose,
+                   "making dataset " + name);
+  std::vector<const char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()), "writing dataset " + name);
+}
+
+// --- Results --------------------------------------------------------------------------------------------------
+
+void write_entries(hid_t group, const std::string& name, const Entries& entries) {
+  std::vector<hsize_t> shape;
+  if (entries.values.size() > 1) shape.push_back(static_cast<hsize_t>(entries.rows));
+  if (entries.columns > 1) shape.push_back(static_cast<hsize_t>(entries.columns));
+  write_dataset(group, name, entries.values, shape);
+}
+
+void write_quantity(hid_t parent, const Quantity& quantity) {
+  const Handle group = open_group(parent, quantity.name);
+  if (!quantity.value.values.empty()) write_entries(group, "value", quantity.value);
+  if (!quantity.error.empty()) {
+    write_entries(group, "error", {quantity.error, static_cast<int>(quantity.error.size()), 1});
+  }
+  if (quantity.evaluations) write_attribute<std::int64_t>(group, "evaluations", *quantity.evaluations);
+  if (quantity.status) write_text_attribute(group, "status", status_name(*quantity.status));
+  if (!quantity.reason.empty()) write_text_attribute(group, "reason", quantity.reason);
+}
+
+void write_quantities(hid_t file, const std::string& name, const std::vector<Quantity>& quantities) {
+  const Handle group = open_group(file, name);
+  for (const Quantity& quantity : quantities) write_quantity(group, quantity);
+}
+
+void write_expectations(hid_t file, const std::vector<ExpectationResult>& results) {
+  const Handle parent = open_group(file, "expectations");
+  for (const ExpectationResult& result : results) {
+    const Handle group = open_group(parent, result.quantity);
+    if (!result.value.values.empty()) write_entries(group, "value", result.value);
+    write_entries(group, "expected", result.expected);
+    if (result.error) write_attribute<double>(group, "error", *result.error);
+    if (result.difference) write_attribute<double>(group, "difference", *result.difference);
+    write_attribute<double>(group, "rtol", result.rtol);
+    write_attribute<double>(group, "atol", result.atol);
+    write_attribute<std::int8_t>(group, "met", result.met ? 1 : 0);
+  }
+}
+
+// --- The boundary ---------------------------------------------------------------------------------------------
+
+template <int Dim>
+void write_elements(hid_t geometry, const geometry::ElementTable<Dim>& table) {
+  const Handle group = open_group(geometry, "elements");
+  std::vector<std::int64_t> offsets{0};
+  std::vector<std::int32_t> degrees;
+  std::vector<std::int32_t> patches;
+  std::vector<double> domains;
+  std::vector<std::int8_t> orientations;
+  std::vector<std::int8_t> polynomial;
+  std::vector<double> nets;
+  for (const geometry::BezierElement<Dim>& element : table.elements) {
+    const std::span<const double> net = table.net(element);
+    nets.insert(nets.end(), net.begin(), net.end());
+    offsets.push_back(offsets.back() + element.control_point_count());
+    for (const std::int8_t degree : element.degree) degrees.push_back(degree);
+    for (const geometry::Interval& interval : element.domain) {
+      domains.insert(domains.end(), {interval.first, interval.last});
+    }
+    patches.push_back(element.patch);
+    orientations.push_back(element.orientation);
+    polynomial.push_back(element.polynomial ? 1 : 0);
+  }
+  const hsize_t count = table.elements.size();
+  write_dataset(group, "nets", nets, {static_cast<hsize_t>(offsets.back()), Dim + 1});
+  write_dataset(group, "offsets", offsets, {count + 1});
+  write_dataset(group, "degrees", degrees, {count, Dim - 1});
+  write_dataset(group, "domains", domains, {count, Dim - 1, 2});
+  write_dataset(group, "patch", patches, {count});
+  write_dataset(group, "orientation", orientations, {count});
+  write_dataset(group, "polynomial", polynomial, {count});
+}
+
+template <int Dim>
+void write_model(hid_t geometry, const Model<Dim>& model) {
+  std::vector<std::string> names;
+  for (const auto& patch : model.oriented.boundary.patches) names.push_back(patch.name);
+  write_texts(geometry, "patch_names", names, {names.size()});
+  write_elements(geometry, model.table);
+}
+
+void write_geometry(hid_t file, const GeometrySummary& summary, const AnyModel& model) {
+  const Handle group = open_group(file, "geometry");
+  write_attribute<std::int32_t>(group, "dimension", summary.dimension);
+  write_attribute<std::int32_t>(group, "patches", summary.patches);
+  write_attribute<std::int64_t>(group, "elements", summary.elements);
+  write_attribute<std::int32_t>(group, "trimmed_faces", 0);
+  write_attribute<std::int8_t>(group, "closed", summary.closed ? 1 : 0);
+  write_attribute<double>(group, "closure_defect", summary.closure_defect);
+  write_attribute<std::int32_t>(group, "shells", summary.shells);
+  write_attribute<std::int32_t>(group, "voids", summary.voids);
+  write_attribute<std::int32_t>(group, "free_edges", summary.free_edges);
+  write_attribute<double>(group, "largest_gap", summary.largest_gap);
+  std::visit([&](const auto& known) { write_model(group, known); }, model);
+}
+
+void write_report(hid_t file, const Report& report, const AnyModel& model) {
+  write_text_attribute(file, "isorim", report.version);
+  write_text_attribute(file, "case", report.title);
+  write_text_attribute(file, "status", status_name(report.status));
+  write_attribute<std::int32_t>(file, "threads", report.threads);
+  write_texts(file, "resolved_case", {report.resolved_case}, {});
+  write_geometry(file, report.geometry, model);
+  write_quantities(file, "properties", report.properties);
+  write_quantities(file, "integrals", report.integrals);
+  write_expectations(file, report.expectations);
+  const Handle timings = open_group(file, "timings");
+  write_attribute<double>(timings, "read", report.timings.read);
+  write_attribute<double>(timings, "integrate", report.timings.integrate);
+  write_attribute<double>(timings, "write", report.timings.write);
+}
+
+}  // namespace
+
+void write_hdf5(const std::filesystem::path& path, const Report& report, const AnyModel& model) {
+  AtomicFile target(path);
+  const SilentErrors silence;
+  try {
+    const Handle file(H5Fcreate(target.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
+                      "making the file");
+    write_report(file, report, model);
+    check(H5Fflush(file, H5F_SCOPE_GLOBAL), "writing the file");
+  } catch (InputError& error) {
+    error.add_context(path.string());
+    throw;
+  }
+  target.commit();
+}
+
+}  // namespace isorim::io

@@ -1,0 +1,34 @@
+#include "io/results/pictures.h"
+
+#include <variant>
+#include <vector>
+
+#include "io/svg/drawing.h"
+#include "io/vtk/bezier_writer.h"
+
+namespace isorim::io {
+
+void write_boundary_vtu(const std::filesystem::path& path, const AnyModel& model) {
+  std::visit(
+      [&](const auto& known) {
+        std::vector<std::string> names;
+        for (const auto& patch : known.oriented.boundary.patches) names.push_back(patch.name);
+        VtuContent content;
+        content.patch_names = names;
+        write_vtu(path, known.table, content);
+      },
+      model);
+}
+
+void write_boundary_svg(const std::filesystem::path& path, const std::string& title, const AnyModel& model) {
+  const auto* plane = std::get_if<Model<2>>(&model);
+  if (!plane) return;
+  svg::Drawing drawing;
+  drawing.title = title;
+  drawing.chains = svg::chains(plane->oriented);
+  drawing.x_label = "x";
+  drawing.y_label = "y";
+  svg::write_svg(path, drawing);
+}
+
+}  // namespace isorim::io

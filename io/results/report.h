@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "quadrature/estimate.h"
+
+/// What a run found, free of dimension and of file formats: the writers of the terminal's table, results.json and
+/// results.h5 all start from it.
+namespace isorim::io {
+
+/// A number, a vector (columns = 1) or a matrix, entry by entry along the rows.
+struct Entries {
+  std::vector<double> values;
+  int rows = 1;
+  int columns = 1;
+
+  double largest_magnitude() const;
+};
+
+/// A single number.
+Entries single(double value);
+
+/// A property or an integral.
+struct Quantity {
+  std::string name;
+  /// No entries if the quantity was refused.
+  Entries value;
+  /// Our estimates of the absolute errors: one an entry, or one for all of them. Empty if there is none.
+  std::vector<double> error;
+  std::optional<std::int64_t> evaluations;
+  std::optional<quadrature::Status> status;
+  /// Why the quantity was refused.
+  std::string reason;
+
+  double largest_error() const;
+};
+
+struct ExpectationResult {
+  std::string quantity;
+  Entries value;
+  Entries expected;
+  /// Our own estimate of the absolute error of the value.
+  std::optional<double> error;
+  double rtol = 0.0;
+  double atol = 0.0;
+  /// max |value - expected|, and the same over max |expected| (absent if that is zero).
+  std::optional<double> difference;
+  std::optional<double> relative_difference;
+  bool met = false;
+};
+
+/// Compares by |value - expected| <= atol + rtol max|expected|, every entry. A value without entries, or one that is
+/// not finite, misses.
+ExpectationResult compare(const Quantity& quantity, const Entries& expected, double rtol, double atol);
+
+enum class RunStatus { ok, expectation_missed, tolerance_not_reached };
+
+std::string_view status_name(RunStatus status);
+std::string_view status_name(quadrature::Status status);
+/// 0, 1 or 3.
+int exit_status(RunStatus status);
+
+struct GeometrySummary {
+  int dimension = 0;
+  int patches = 0;
+  std::int64_t elements = 0;
+  int shells = 0;
+  int voids = 0;
+  bool closed = false;
+  int free_edges = 0;
+  double closure_defect = 0.0;
+  /// The largest distance between ends or edges that were taken as the same, in the units of the shape.
+  double largest_gap = 0.0;
+  /// Of the control net.
+  std::vector<double> box_lower;
+  std::vector<double> box_upper;
+};
+
+/// Seconds.
+struct Timings {
+  double read = 0.0;
+  double integrate = 0.0;
+  double write = 0.0;
+};
+
+struct Report {
+  std::string version;
+  std::string title;
+  /// The case with overrides and defaults as TOML.
+  std::string resolved_case;
+  RunStatus status = RunStatus::ok;
+  GeometrySummary geometry;
+  std::vector<Quantity> properties;
+  std::vector<Quantity> integrals;
+  std::vector<ExpectationResult> expectations;
+  Timings timings;
+  int threads = 1;
+  /// What the user should know though the run went well: a boundary that is open, ...
+  std::vector<std::string> warnings;
+
+  /// A property or integral; null if there is none of the name.
+  const Quantity* find(std::string_view name) const;
+};
+
+/// The version of the program, "0.1.0".
+std::string_view program_version();
+
+}  // namespace isorim::io
