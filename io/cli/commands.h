@@ -1,0 +1,72 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The commands of the program, apart from how they are spelled on the command line. Each returns its exit status and
+/// throws what ends it early.
+namespace isorim::cli {
+
+enum class Verbosity { normal, quiet };
+
+struct RunArguments {
+  std::filesystem::path case_file;
+  /// out/<case name>/ if absent.
+  std::optional<std::filesystem::path> output;
+  std::vector<std::string> overrides;
+  /// 0: all.
+  int threads = 0;
+  Verbosity verbosity = Verbosity::normal;
+};
+/// Computes a case, prints the table and writes the files that it asks for.
+int run_case(const RunArguments& arguments, std::ostream& out, std::ostream& err);
+
+struct VerifyArguments {
+  /// A folder, or one case file; cases/verification if absent.
+  std::optional<std::filesystem::path> where;
+  std::optional<std::filesystem::path> json;
+  int threads = 0;
+};
+/// Runs every case with [expect] below a folder and prints one table.
+int verify_cases(const VerifyArguments& arguments, std::ostream& out, std::ostream& err);
+
+struct CheckArguments {
+  std::filesystem::path case_file;
+  std::vector<std::string> overrides;
+};
+/// Tells what a case holds without integrating.
+int check_case(const CheckArguments& arguments, std::ostream& out, std::ostream& err);
+
+/// Prints each line of a message as "isorim: line".
+void print_message(std::ostream& err, std::string_view message);
+
+/// What an exception that ends a command means: its message on `err`, its exit status.
+int report_failure(const std::exception& error, std::ostream& err);
+
+/// A line on `err` that tells how far a long run is: shown after half a second and then at most ten times a second, if
+/// `err` is the terminal; wiped away by the destructor.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::ostream& err);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  /// For RunOptions::progress; empty if `err` is no terminal. Valid as long as this object.
+  std::function<void(std::string_view, double)> reporter();
+
+ private:
+  void report(std::string_view stage, double fraction);
+
+  std::ostream& err_;
+  double shown_at_ = 0.5;
+  bool shown_ = false;
+  double start_ = 0.0;
+};
+
+}  // namespace isorim::cli

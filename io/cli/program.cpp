@@ -1,0 +1,154 @@
+#include "io/cli/program.h"
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <ostream>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "geometry/errors.h"
+#include "io/case/complaints.h"
+#include "io/case/reference.h"
+#include "io/cli/commands.h"
+#include "io/results/report.h"
+
+namespace isorim::cli {
+namespace {
+
+constexpr const char* about = "isorim: integrals over what CAD boundaries enclose, exactly, without a mesh";
+
+struct HelpArguments {
+  std::vector<std::string> topic;
+  bool markdown = false;
+};
+
+/// CLI11 keeps references to what it fills.
+struct Arguments {
+  RunArguments run;
+  bool quiet = false;
+  VerifyArguments verify;
+  CheckArguments check;
+  HelpArguments help;
+};
+
+void add_case_options(CLI::App& command, std::filesystem::path& file, std::vector<std::string>& overrides) {
+  command.add_option("CASE", file, "Case file (.toml)")->required();
+  command.add_option("--set", overrides, "Overrides a key of the case: section.key=value; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_threads(CLI::App& command, int& threads) {
+  command.add_option("-j,--threads", threads, "Number of threads; all if absent")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
+}
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.set_version_flag("--version", std::string(io::program_version()), "Prints the version");
+  app.require_subcommand(0, 1);
+
+  CLI::App& run = *app.add_subcommand("run", "Computes a case, prints its results and writes them");
+  add_case_options(run, arguments.run.case_file, arguments.run.overrides);
+  run.add_option("-o,--output", arguments.run.output, "Output folder; out/<case name> if absent")->type_name("DIR");
+  add_threads(run, arguments.run.threads);
+  run.add_flag("-q,--quiet", arguments.quiet, "Prints no table");
+
+  CLI::App& verify = *app.add_subcommand("verify", "Runs every case with [expect] below a folder, as one table");
+  verify.add_option("DIR", arguments.verify.where, "Folder or case file; cases/verification if absent");
+  verify.add_option("--json", arguments.verify.json, "Writes the table as JSON")->type_name("FILE");
+  add_threads(verify, arguments.verify.threads);
+
+  CLI::App& check = *app.add_subcommand("check", "Tells what is in a case, closed or not, without integrating");
+  add_case_options(check, arguments.check.case_file, arguments.check.overrides);
+
+  CLI::App& help = *app.add_subcommand("help", "Explains a command (help run) or case files (help case [SECTION])");
+  help.add_option("TOPIC", arguments.help.topic, "A command; or case, with a section or type")->expected(0, 2);
+  help.add_flag("--markdown", arguments.help.markdown, "Prints the reference of case files as Markdown");
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
+/// Commands of the design that come later.
+bool is_later(const std::string& command) {
+  const std::vector<std::string> later{"convert", "sweep", "picture"};
+  return std::find(later.begin(), later.end(), command) != later.end();
+}
+
+void check_command(const CLI::App& app, const std::string& word, const std::string& what) {
+  const std::vector<std::string> names = command_names(app);
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  if (is_later(word)) throw InputError(fmt::format("the command \"{}\" is not available in this version", word));
+  throw InputError(fmt::format("found the {} \"{}\"{}; expected one of {}", what, word, io::did_you_mean(word, names),
+                               fmt::join(names, ", ")));
+}
+
+int print_help(const HelpArguments& arguments, std::ostream& out) {
+  // Not the one that has parsed the command line: it would tell of the command help alone.
+  CLI::App app(about, "isorim");
+  Arguments unused;
+  declare(app, unused);
+  if (arguments.markdown) {
+    out << io::case_reference_markdown();
+  } else if (arguments.topic.empty()) {
+    out << app.help() << "\nExit status: 0 all well; 1 an expectation was missed; 2 bad input or usage; 3 a numerical "
+        << "failure.\n";
+  } else if (arguments.topic.front() == "case") {
+    out << (arguments.topic.size() == 1 ? io::case_overview() : io::case_topic(arguments.topic[1]));
+  } else {
+    check_command(app, arguments.topic.front(), "topic");
+    out << app.get_subcommand(arguments.topic.front())->help();
+  }
+  return 0;
+}
+
+int dispatch(CLI::App& app, Arguments& arguments, std::ostream& out, std::ostream& err) {
+  if (app.got_subcommand("run")) {
+    arguments.run.verbosity = arguments.quiet ? Verbosity::quiet : Verbosity::normal;
+    return run_case(arguments.run, out, err);
+  }
+  if (app.got_subcommand("verify")) return verify_cases(arguments.verify, out, err);
+  if (app.got_subcommand("check")) return check_case(arguments.check, out, err);
+  if (app.got_subcommand("help")) return print_help(arguments.help, out);
+  err << app.help();
+  return 2;
+}
+
+int parse_and_dispatch(const std::vector<std::string>& args, std::ostream& out, std::ostream& err) {
+  CLI::App app(about, "isorim");
+  Arguments arguments;
+  declare(app, arguments);
+  if (!args.empty() && !args.front().starts_with('-')) check_command(app, args.front(), "command");
+  try {
+    // CLI11 takes them from the back.
+    app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
+  } catch (const CLI::Success& success) {
+    return app.exit(success, out, err);
+  } catch (const CLI::ParseError& error) {
+    print_message(err, error.what());
+    print_message(err, "isorim help lists the commands, isorim help COMMAND its options");
+    return 2;
+  }
+  return dispatch(app, arguments, out, err);
+}
+
+}  // namespace
+
+int run_program(const std::vector<std::string>& args, std::ostream& out, std::ostream& err) {
+  try {
+    return parse_and_dispatch(args, out, err);
+  } catch (const std::exception& error) {
+    return report_failure(error, err);
+  }
+}
+
+}  // namespace isorim::cli

@@ -1,0 +1,79 @@
+#include <chrono>
+#include <ostream>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "geometry/errors.h"
+#include "io/cli/commands.h"
+#include "io/results/compute.h"
+#include "io/results/convergence.h"
+#include "io/results/hdf5.h"
+#include "io/results/json.h"
+#include "io/results/pictures.h"
+#include "io/results/table.h"
+
+namespace isorim::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw InputError(fmt::format("{}: cannot make the folder: {}", folder.string(), error.message()));
+  }
+}
+
+void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io::Convergence& study,
+                   io::Report& report, const std::filesystem::path& folder) {
+  const Clock::time_point start = Clock::now();
+  make_folder(folder);
+  const io::OutputKeys& output = file.keys.output;
+  if (output.vtk) io::write_boundary_vtu(folder / "boundary.vtu", model);
+  if (output.svg) io::write_boundary_svg(folder / "boundary.svg", report.title, model);
+  if (file.keys.convergence) {
+    io::write_convergence_csv(folder / "convergence.csv", study);
+    io::write_convergence_svg(folder / "convergence.svg", report.title, study);
+  }
+  report.timings.write = seconds_since(start);
+  if (output.hdf5) io::write_hdf5(folder / "results.h5", report, model);
+  report.timings.write = seconds_since(start);
+  // Last: whoever finds it finds the rest as well.
+  io::write_json(folder / "results.json", report);
+}
+
+}  // namespace
+
+int run_case(const RunArguments& arguments, std::ostream& out, std::ostream& err) {
+  const Clock::time_point start = Clock::now();
+  const io::CaseFile file = io::read_case(arguments.case_file, arguments.overrides);
+  const io::AnyModel model = io::build_model(file);
+  const double read = seconds_since(start);
+  io::Report report;
+  io::Convergence study;
+  {
+    ProgressLine progress(err);
+    const io::RunOptions options{arguments.threads, progress.reporter()};
+    report = io::compute(file, model, options);
+    study = io::study_convergence(file, model, options);
+  }
+  report.timings.read = read;
+  const std::filesystem::path folder = arguments.output.value_or(std::filesystem::path("out") / file.name());
+  write_outputs(file, model, study, report, folder);
+  for (const std::string& warning : report.warnings) {
+    print_message(err, fmt::format("{}: {}", arguments.case_file.string(), warning));
+  }
+  if (arguments.verbosity == Verbosity::normal) {
+    out << io::results_text(report) << fmt::format("  results in {}\n", folder.string());
+  }
+  return io::exit_status(report.status);
+}
+
+}  // namespace isorim::cli

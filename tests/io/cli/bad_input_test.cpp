@@ -1,0 +1,337 @@
+#include <filesystem>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/io/cli/program_test.h"
+
+namespace isorim::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A minimal bad case and what the message must say.
+struct BadCase {
+  std::string name;
+  std::string text;
+  std::vector<std::string> fragments;
+
+  friend std::ostream& operator<<(std::ostream& out, const BadCase& bad) { return out << bad.name; }
+};
+
+class BadInput : public ProgramTest, public ::testing::WithParamInterface<BadCase> {};
+
+TEST_P(BadInput, IsRefusedWithStatus2AndNothingWritten) {
+  const ProgramResult result = run_case(GetParam().text);
+  EXPECT_EQ(result.status, 2) << result.err;
+  for (const std::string& fragment : GetParam().fragments) EXPECT_THAT(result.err, HasSubstr(fragment));
+  EXPECT_THAT(result.err, HasSubstr("case.toml:"));
+  EXPECT_EQ(result.out, "");
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
+}
+
+const std::string circle = "[geometry]\ntype = 'circle'\nradius = 1\n";
+const std::string sphere = "[geometry]\ntype = 'sphere'\nradius = 1\n";
+
+std::string nurbs(const std::string& knots, const std::string& more) {
+  return "[geometry]\ntype = 'nurbs'\ncurves = [{ degree = 1, knots = " + knots + ", " + more + " }]\n";
+}
+
+std::string polygon(const std::string& points) {
+  return "[geometry]\ntype = 'polygon'\npoints = " + points + "\n";
+}
+
+std::string region(const std::string& loops) {
+  return "[geometry]\ntype = 'region'\nloops = [" + loops + "]\n";
+}
+
+const std::vector<BadCase> syntax{
+    {"NotToml", "[geometry\n", {"case.toml:1:", "not TOML"}},
+    {"KeyTwice", "title = 'a'\ntitle = 'b'\n", {"case.toml:2:", "not TOML"}},
+    {"EmptyFile", "", {"the key \"geometry\" (table) is missing"}},
+};
+
+const std::vector<BadCase> keys{
+    {"UnknownKey",
+     "[geometry]\ntype = 'circle'\nradius = 1\nradii = 2\n",
+     {"case.toml:4: geometry.radii: unknown key (did you mean \"radius\"?)"}},
+    {"UnknownSection",
+     circle + "[propertis]\ntolerance = 1e-9\n",
+     {"case.toml:4: propertis: unknown key (did you mean \"properties\"?)"}},
+    {"UnknownKeyNearNothing",
+     "[geometry]\ntype = 'circle'\nradius = 1\nzzzzzzzzz = 2\n",
+     {"geometry.zzzzzzzzz: unknown key; expected one of radius, centre, name, transform"}},
+    {"UnknownKeyInExpect",
+     circle + "[expect]\narea = { value = 3, rtoll = 1 }\n",
+     {"case.toml:5: expect.area.rtoll: unknown key (did you mean \"rtol\"?)"}},
+    {"MissingKey", "[geometry]\ntype = 'circle'\n", {"geometry: the key \"radius\" (real) is missing"}},
+    {"MissingType", "[geometry]\nradius = 1\n", {"case.toml:1: geometry: the key \"type\" is missing"}},
+    {"UnknownType",
+     "[geometry]\ntype = 'circel'\n",
+     {"case.toml:2: geometry.type: found the text \"circel\"", "(did you mean \"circle\"?)"}},
+    {"LaterType",
+     "[geometry]\ntype = 'file'\npath = 'a.igs'\n",
+     {"the type \"file\" is not available in this version"}},
+    {"LaterSection", circle + "[analysis]\nequation = 'laplace'\n", {"analysis: not available in this version"}},
+    {"LaterKey", circle + "clip = { normal = [1, 0] }\n", {"geometry.clip: not available in this version"}},
+};
+
+const std::vector<BadCase> types{
+    {"TextForReal",
+     "[geometry]\ntype = 'circle'\nradius = 'one'\n",
+     {"case.toml:3: geometry.radius: found the text \"one\"; expected a real"}},
+    {"BooleanForReal", "[geometry]\ntype = 'circle'\nradius = true\n", {"found the boolean true; expected a real"}},
+    {"DateForText", "title = 2016-01-01\n" + circle, {"title: found the date or time 2016-01-01; expected a text"}},
+    {"RealForInteger",
+     circle + "[properties]\ngauss_points = 4.0\n",
+     {"properties.gauss_points: found the real 4; expected an integer"}},
+    {"IntegerForBoolean", circle + "[output]\nvtk = 1\n", {"output.vtk: found the integer 1; expected true or false"}},
+    {"IntegerForText", "title = 3\n" + circle, {"case.toml:1: title: found the integer 3; expected a text in quotes"}},
+    {"ListForTable", "geometry = [1]\n", {"geometry: found a list of 1; expected a table"}},
+    {"TextForTable", "properties = 'none'\n" + circle, {"properties: found the text \"none\"; expected a table"}},
+    {"TableForList", circle + "[integral]\nname = 'a'\n", {"integral: found a table; expected a list of tables"}},
+    {"NotANumber", "[geometry]\ntype = 'circle'\nradius = nan\n", {"geometry.radius", "expected a finite real"}},
+    {"Infinity", "[geometry]\ntype = 'circle'\nradius = inf\n", {"geometry.radius", "expected a finite real"}},
+    {"TooFewCoordinates",
+     circle + "centre = [1]\n",
+     {"geometry.centre: found a list of 1; expected a list of 2 reals"}},
+    {"TextAmongCoordinates",
+     circle + "centre = [1, 'b']\n",
+     {"geometry.centre[2]: found the text \"b\"; expected a real"}},
+    {"UnknownChoice",
+     circle + "[[integral]]\nname = 'a'\nover = 'domian'\nintegrand = 'x'\n",
+     {"integral[1].over: found the text \"domian\"; expected one of \"domain\", \"boundary\" (did you mean "
+      "\"domain\"?)"}},
+    {"RaggedExpectation",
+     sphere + "[expect]\ninertia = { value = [[1, 0, 0], [0, 1]], rtol = 1 }\n",
+     {"expect.inertia.value[2]: found a list of 2; expected a list of 3 reals"}},
+};
+
+const std::vector<BadCase> ranges{
+    {"NegativeRadius",
+     "[geometry]\ntype = 'circle'\nradius = -1\n",
+     {"case.toml:3: geometry.radius: found -1; expected a number > 0"}},
+    {"ZeroRadius", "[geometry]\ntype = 'sphere'\nradius = 0\n", {"geometry.radius: found 0; expected a number > 0"}},
+    {"NegativeSize",
+     "[geometry]\ntype = 'box'\nsize = [1, -2, 3]\n",
+     {"geometry.size[2]: found -2; expected a number > 0"}},
+    {"ZeroTolerance",
+     circle + "[properties]\ntolerance = 0\n",
+     {"properties.tolerance: found 0; expected a number > 0 and <= 0.1"}},
+    {"NegativeDensity", circle + "[properties]\ndensity = -1\n", {"properties.density: found -1"}},
+    {"TooManyGaussPoints",
+     circle + "[properties]\ngauss_points = 1000\n",
+     {"properties.gauss_points: found 1000; expected a number from 0 to 128"}},
+    {"SpindleTorus",
+     "[geometry]\ntype = 'torus'\nmajor_radius = 1\nminor_radius = 2\n",
+     {"expected minor_radius < major_radius"}},
+    {"ConeWithoutRadius", "[geometry]\ntype = 'cone'\nheight = 1\n", {"found neither; expected exactly one of"}},
+    {"ConeOfNoWidth", "[geometry]\ntype = 'cone'\nradii = [0, 0]\nheight = 1\n", {"at least one radius > 0"}},
+    {"PoleInTheWrongSpace",
+     circle + "[properties]\npole = [0, 0, 0]\n",
+     {"properties.pole: found 3 coordinates; expected 2"}},
+    {"AxisWithoutDirection",
+     "[geometry]\ntype = 'revolve'\naxis = { direction = [0, 0, 0] }\nprofile = [{ type = 'line', from = [1, 0], to = "
+     "[1, 1] }]\n",
+     {"geometry.axis: the key \"direction\" is [0, 0, 0]"}},
+    {"TurnOfNothing",
+     "[geometry]\ntype = 'revolve'\naxis = {}\nangle = 0\nprofile = [{ type = 'line', from = [1, 0], to = [1, 1] }]\n",
+     {"geometry.angle: found 0; expected a number > 0 and <= 360"}},
+};
+
+const std::vector<BadCase> shapes{
+    {"OpenLoop",
+     region("{ curves = [{ type = 'polyline', points = [[0, 0], [1, 0], [1, 1]] }] }"),
+     {"case.toml:3: geometry.loops[1]", "the boundary is not closed"}},
+    {"OpenNurbsLoop",
+     region("{ type = 'nurbs', degree = 1, knots = [0, 0, 1, 2, 2], points = [[0, 0], [1, 0], [1, 1]] }"),
+     {"geometry.loops[1]", "the boundary is not closed"}},
+    {"FallingKnots",
+     nurbs("[0, 0, 2, 1, 3, 3]", "points = [[0, 0], [1, 0], [1, 1], [0, 0]]"),
+     {"geometry.curves[1]", "knot"}},
+    {"TooFewKnots", nurbs("[0, 0, 1, 1]", "points = [[0, 0], [1, 0], [1, 1], [0, 0]]"), {"geometry.curves[1]", "4"}},
+    {"NegativeWeight",
+     nurbs("[0, 0, 1, 1]", "points = [[0, 0], [1, 0]], weights = [1, -1]"),
+     {"geometry.curves[1].weights[2]: found -1; expected a number > 0"}},
+    {"HomogeneousWeightZero",
+     nurbs("[0, 0, 1, 1]", "homogeneous = [[0, 0, 1], [1, 0, 0]]"),
+     {"geometry.curves[1]", "weight"}},
+    {"TooFewWeights",
+     nurbs("[0, 0, 1, 1]", "points = [[0, 0], [1, 0]], weights = [1]"),
+     {"geometry.curves[1]: found 1 weights for 2 points; expected one each"}},
+    {"PointsTwice",
+     nurbs("[0, 0, 1, 1]", "points = [[0, 0], [1, 0]], homogeneous = [[0, 0, 1], [1, 0, 1]]"),
+     {"found both; expected exactly one of \"points\" and \"homogeneous\""}},
+    {"PointsOfSpaceInThePlane",
+     nurbs("[0, 0, 1, 1]", "points = [[0, 0, 0], [1, 0, 0]]"),
+     {"geometry.curves[1].points[1]: found 3 coordinates; expected 2"}},
+    {"RaggedPoints",
+     nurbs("[0, 0, 1, 1]", "points = [[0, 0], [1, 0, 0]]"),
+     {"geometry.curves[1].points[2]: found 3 numbers"}},
+    {"PeriodicWithClampedKnots",
+     nurbs("[0, 1, 2, 3]", "periodic = true, points = [[0, 0], [1, 0], [1, 1], [0, 1]]"),
+     {"geometry.curves[1]", "control points"}},
+    {"WrongNet",
+     "[geometry]\ntype = 'nurbs'\n[[geometry.patches]]\ndegrees = [1, 1]\nknots_u = [0, 0, 1, 1]\nknots_v = [0, 0, 1, "
+     "1]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n",
+     {"case.toml:7: geometry.patches[1].points: found 3 control points; the degrees and knots ask for 2 x 2 = 4"}},
+    {"RealDegree",
+     "[geometry]\ntype = 'nurbs'\n[[geometry.patches]]\ndegrees = [1, 1.5]\nknots_u = [0, 0, 1, 1]\nknots_v = [0, 0, "
+     "1, 1]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]\n",
+     {"geometry.patches[1].degrees[2]: found the real 1.5; expected an integer"}},
+    {"CrossingLoop", polygon("[[0, 0], [2, 2], [2, 0], [0, 1]]"), {"geometry", "cross"}},
+    {"LoopsThatCross",
+     region("{ type = 'circle', radius = 1 }, { type = 'circle', radius = 1, centre = [1, 0] }"),
+     {"geometry", "cross"}},
+    {"LoopWithoutArea", polygon("[[0, 0], [1, 0], [2, 0]]"), {"geometry"}},
+    {"TwoCorners", polygon("[[0, 0], [1, 0]]"), {"geometry: found 2 corners; expected at least 3"}},
+    {"NoLoops", region(""), {"geometry: found 0 loops; expected at least 1"}},
+    {"RepeatedPoint", polygon("[[0, 0], [1, 0], [1, 0], [0, 1]]"), {"case.toml:1: geometry"}},
+    {"HoleOutside",
+     region("{ type = 'circle', radius = 1, role = 'hole' }"),
+     {"geometry.loops[1]: the role is \"hole\", but the loop lies in no other one"}},
+    {"OuterInside",
+     region("{ type = 'circle', radius = 1, role = 'outer' }, { type = 'circle', radius = 0.5, role = 'outer' }"),
+     {"geometry.loops[2]: the role is \"outer\", but the loop lies inside another one"}},
+    {"PatchNameTwice",
+     region("{ type = 'circle', radius = 1, name = 'a' }, { type = 'circle', radius = 0.5, name = 'a' }"),
+     {"two patches have the name \"a\""}},
+    {"RegionAcrossTheAxis",
+     "[geometry]\ntype = 'revolve'\naxis = { direction = [0, 1, 0] }\nregion = { type = 'circle', radius = 1 }\n",
+     {"geometry"}},
+    {"ExtrusionInThePlane",
+     "[geometry]\ntype = 'extrude'\nvector = [1, 0, 0]\nregion = { type = 'circle', radius = 1 }\n",
+     {"geometry"}},
+    {"AxisInThePlane",
+     circle + "transform = { rotate = { axis = [0, 0, 1], angle = 30 } }\n",
+     {"geometry.transform.rotate: found an \"axis\""}},
+    {"ShiftInTheWrongSpace",
+     circle + "transform = { translate = [1, 2, 3] }\n",
+     {"geometry.transform.translate: found 3 coordinates; expected 2"}},
+    {"ScaledToNothing", circle + "transform = { scale = 0 }\n", {"geometry.transform.scale"}},
+};
+
+const std::vector<BadCase> quantities{
+    {"IntegrandThatDoesNotParse",
+     circle + "[[integral]]\nname = 'a'\nintegrand = 'x + * y'\n",
+     {"integral[1].integrand: at character 5"}},
+    {"IntegrandThatEnds",
+     circle + "[[integral]]\nname = 'a'\nintegrand = 'x +'\n",
+     {"integral[1].integrand: at the end"}},
+    {"UnknownVariable",
+     circle + "[[integral]]\nname = 'a'\nintegrand = '2*radius'\n",
+     {"at character 3: found the unknown name \"radius\"; expected x, y, pi, e or a function"}},
+    {"SpaceVariableInThePlane",
+     circle + "[[integral]]\nname = 'a'\nintegrand = 'x*z'\n",
+     {"at character 3: found \"z\" in the plane"}},
+    {"NormalInADomain",
+     sphere + "[[integral]]\nname = 'a'\nintegrand = 'nx'\n",
+     {"at character 1: found \"nx\", the normal, which only a boundary has"}},
+    {"IntegralNameTwice",
+     circle + "[[integral]]\nname = 'a'\nintegrand = 'x'\n[[integral]]\nname = 'a'\nintegrand = 'y'\n",
+     {"integral[2]: the name \"a\" is taken by another integral"}},
+    {"IntegralNamedLikeAProperty",
+     circle + "[[integral]]\nname = 'area'\nintegrand = 'x'\n",
+     {"integral[1]: the name \"area\" is taken by a property"}},
+    {"IntegralNameWithASlash",
+     circle + "[[integral]]\nname = 'a/b'\nintegrand = 'x'\n",
+     {"integral[1].name: found \"a/b\"; expected letters, digits, _ and -"}},
+    {"PoleOfABoundaryIntegral",
+     circle + "[[integral]]\nname = 'a'\nover = 'boundary'\nintegrand = 'x'\npole = [0, 0]\n",
+     {"integral[1].pole: an integral over a boundary has no pole"}},
+    {"DomainIntegralOfAnOpenBoundary",
+     "[geometry]\ntype = 'ellipse_arc'\nradii = [2, 1]\nangles = [0, 90]\n[[integral]]\nname = 'a'\nintegrand = 'x'\n",
+     {"integral[1]: the integral \"a\" is over a domain, but the boundary is open", "2 free ends"}},
+    {"VolumeInThePlane",
+     circle + "[expect]\nvolume = { value = 1, rtol = 1 }\n",
+     {"expect.volume: found the quantity \"volume\"; expected one of perimeter, area"}},
+    {"UnknownQuantity", circle + "[expect]\nperimetre = { value = 1, rtol = 1 }\n", {"(did you mean \"perimeter\"?)"}},
+    {"MassWithoutDensity", circle + "[expect]\nmass = { value = 1, rtol = 1 }\n", {"[properties] has no density"}},
+    {"ExpectationWithoutTolerance",
+     circle + "[expect]\narea = { value = 1 }\n",
+     {"expect.area: found no tolerance; expected at least one of \"rtol\" and \"atol\""}},
+    {"NegativeExpectationTolerance",
+     circle + "[expect]\narea = { value = 1, rtol = -1 }\n",
+     {"expect.area.rtol: found -1; expected a number >= 0"}},
+    {"ExpectationOfTheWrongShape",
+     circle + "[expect]\ncentroid = { value = 1, rtol = 1 }\n",
+     {"expect.centroid.value: found a real; expected a list of 2 reals"}},
+    {"ConvergenceToNothing",
+     circle + "[convergence]\npoints = [1, 2]\n",
+     {"convergence: found no expected values to compare with"}},
+    {"ConvergenceOfWhatIsNotExpected",
+     circle + "[expect]\narea = { value = 1, rtol = 1 }\n[convergence]\npoints = [1]\nquantities = ['perimeter']\n",
+     {"the quantity \"perimeter\" has no expected value"}},
+    {"ConvergenceBackwards",
+     circle + "[expect]\narea = { value = 1, rtol = 1 }\n[convergence]\npoints = { from = 3, to = 1 }\n",
+     {"convergence.points: found from = 3 above to = 1"}},
+};
+
+std::string case_name(const ::testing::TestParamInfo<BadCase>& info) {
+  return info.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Syntax, BadInput, ::testing::ValuesIn(syntax), case_name);
+INSTANTIATE_TEST_SUITE_P(Keys, BadInput, ::testing::ValuesIn(keys), case_name);
+INSTANTIATE_TEST_SUITE_P(Types, BadInput, ::testing::ValuesIn(types), case_name);
+INSTANTIATE_TEST_SUITE_P(Ranges, BadInput, ::testing::ValuesIn(ranges), case_name);
+INSTANTIATE_TEST_SUITE_P(Shapes, BadInput, ::testing::ValuesIn(shapes), case_name);
+INSTANTIATE_TEST_SUITE_P(Quantities, BadInput, ::testing::ValuesIn(quantities), case_name);
+
+class SeveralFaults : public ProgramTest {};
+
+TEST_F(SeveralFaults, AreAllNamedInOneRunInTheOrderOfTheFile) {
+  const ProgramResult result = run_case(
+      "titel = 'a'\n[geometry]\ntype = 'circle'\nradius = -1\ncentre = [0]\n[properties]\ntolerance = 'x'\n"
+      "[[integral]]\nname = 3\nintegrand = 'x'\n[expect]\narea = { value = 1 }\n");
+  EXPECT_EQ(result.status, 2);
+  std::size_t last = 0;
+  for (const char* fragment :
+       {"case.toml:1: titel: unknown key (did you mean \"title\"?)", "case.toml:4: geometry.radius: found -1",
+        "case.toml:5: geometry.centre: found a list", "case.toml:7: properties.tolerance: found the text",
+        "case.toml:9: integral[1].name: found", "case.toml:12: expect.area: found no tolerance"}) {
+    const std::size_t found = result.err.find(fragment);
+    ASSERT_NE(found, std::string::npos) << fragment << "\nin\n" << result.err;
+    EXPECT_GE(found, last) << fragment << " out of order in\n" << result.err;
+    last = found;
+  }
+}
+
+TEST_F(SeveralFaults, OfGeometryAndSectionsComeTogether) {
+  const ProgramResult result =
+      run_case(region("{ type = 'polygon', points = [[0, 0], [1, 1], [1, 0], [0, 1]] }, { curves = [{ type = 'line', "
+                      "from = [0, 0], to = [1, 0] }] }") +
+               "[[integral]]\nname = 'a'\nintegrand = 'x+'\n");
+  EXPECT_EQ(result.status, 2);
+  for (const char* fragment : {"geometry.loops[1]", "geometry.loops[2]", "integral[1].integrand"}) {
+    EXPECT_THAT(result.err, HasSubstr(fragment));
+  }
+}
+
+class BadFile : public ProgramTest {};
+
+TEST_F(BadFile, MissingIsNamed) {
+  const ProgramResult result = run({"run", path("nothing.toml"), "-o", path("out")});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("nothing.toml: no such file"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
+}
+
+TEST_F(BadFile, FolderIsRefused) {
+  const ProgramResult result = run({"run", folder().string()});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("is a folder"));
+}
+
+TEST_F(BadFile, OutputThatIsAFileIsRefused) {
+  write("occupied", "");
+  const ProgramResult result = run({"run", write("case.toml", circle), "-o", path("occupied")});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("occupied: cannot make the folder"));
+}
+
+}  // namespace
+}  // namespace isorim::testing
