@@ -60,7 +60,8 @@ std::string wrapped(const std::string& text, std::size_t width, std::size_t inde
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     const std::size_t length = end - begin;
     if (column > 0 && column + 1 + length > width) {
-      result += "\n" + std::string(indent, ' ');
+      result += '\n';
+      result.append(indent, ' ');
       column = 0;
     } else if (column > 0) {
       result += ' ';
@@ -82,9 +83,14 @@ std::string topic_text(const Description& description) {
   return text;
 }
 
-std::string markdown_cell(std::string text) {
-  for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, "\\");
-  return text;
+/// A bar would end the cell.
+std::string markdown_cell(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '|') result += '\\';
+    result += c;
+  }
+  return result;
 }
 
 std::string markdown_table(const Description& description) {
@@ -120,7 +126,9 @@ std::string case_topic(const std::string& name) {
   if (name == "geometry") return case_overview();
   for (const Description* description : distinct_descriptions()) {
     names.push_back(description->name);
-    if (description->name == name) text += (text.empty() ? "" : "\n") + topic_text(*description);
+    if (description->name != name) continue;
+    if (!text.empty()) text += '\n';
+    text += topic_text(*description);
   }
   if (text.empty()) {
     throw InputError(fmt::format("help case: found \"{}\"{}; expected a section or type: {}", name,

@@ -23,11 +23,7 @@ void write_boundary_vtu(const std::filesystem::path& path, const AnyModel& model
 void write_boundary_svg(const std::filesystem::path& path, const std::string& title, const AnyModel& model) {
   const auto* plane = std::get_if<Model<2>>(&model);
   if (!plane) return;
-  svg::Drawing drawing;
-  drawing.title = title;
-  drawing.chains = svg::chains(plane->oriented);
-  drawing.x_label = "x";
-  drawing.y_label = "y";
+  const svg::Drawing drawing{.title = title, .chains = svg::chains(plane->oriented), .x_label = "x", .y_label = "y"};
   svg::write_svg(path, drawing);
 }
 

@@ -1,7 +1,6 @@
 #include "io/results/report.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -47,18 +46,43 @@ ExpectationResult compare(const Quantity& quantity, const Entries& expected, dou
 }
 
 std::string_view status_name(RunStatus status) {
-  constexpr std::array<std::string_view, 3> names{"ok", "expectation_missed", "tolerance_not_reached"};
-  return names[static_cast<std::size_t>(status)];
+  switch (status) {
+    case RunStatus::ok:
+      return "ok";
+    case RunStatus::expectation_missed:
+      return "expectation_missed";
+    case RunStatus::tolerance_not_reached:
+      return "tolerance_not_reached";
+  }
+  return "unknown";
 }
 
 std::string_view status_name(quadrature::Status status) {
-  constexpr std::array<std::string_view, 4> names{"exact", "converged", "fixed_rule", "tolerance_not_reached"};
-  return names[static_cast<std::size_t>(status)];
+  switch (status) {
+    case quadrature::Status::exact:
+      return "exact";
+    case quadrature::Status::converged:
+      return "converged";
+    case quadrature::Status::limited_by_rounding:
+      return "limited_by_rounding";
+    case quadrature::Status::fixed_rule:
+      return "fixed_rule";
+    case quadrature::Status::tolerance_not_reached:
+      return "tolerance_not_reached";
+  }
+  return "unknown";
 }
 
 int exit_status(RunStatus status) {
-  constexpr std::array<int, 3> statuses{0, 1, 3};
-  return statuses[static_cast<std::size_t>(status)];
+  switch (status) {
+    case RunStatus::ok:
+      return 0;
+    case RunStatus::expectation_missed:
+      return 1;
+    case RunStatus::tolerance_not_reached:
+      break;
+  }
+  return 3;
 }
 
 const Quantity* Report::find(std::string_view name) const {
