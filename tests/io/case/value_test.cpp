@@ -110,8 +110,14 @@ TEST(Complaints, ComeInTheOrderOfTheFileAndAllTogether) {
   const auto source = std::make_shared<const std::string>("a.toml");
   Complaints complaints;
   EXPECT_NO_THROW(complaints.throw_if_any());
-  complaints.add({{source, 7, 1}, "b"}, "second");
-  complaints.add({{source, 2, 1}, "a"}, "first");
+  const auto at = [&](int line, const char* path) {
+    KeyPlace place;
+    place.place = Place{source, line, 1};
+    place.path = path;
+    return place;
+  };
+  complaints.add(at(7, "b"), "second");
+  complaints.add(at(2, "a"), "first");
   try {
     complaints.throw_if_any();
     FAIL();

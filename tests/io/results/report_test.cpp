@@ -64,8 +64,13 @@ TEST(ExitStatus, IsThatOfTheContract) {
 TEST(Json, KeepsBitsAndShowsWhatIsNotFiniteAsNull) {
   Report report;
   report.title = "Ünïcode \"quoted\"";
-  report.properties = {scalar(0.1 + 0.2), {"centroid", {{nan, 1.0 / 3.0}, 2, 1}, {}, {}, {}, ""}};
-  report.properties.push_back({"inertia", {{1, 2, 3, 4}, 2, 2}, {1e-300}, {}, {}, ""});
+  report.properties.push_back(scalar(0.1 + 0.2));
+  report.properties.push_back(vector({nan, 1.0 / 3.0}));
+  Quantity inertia = scalar(0.0);
+  inertia.name = "inertia";
+  inertia.value = {{1, 2, 3, 4}, 2, 2};
+  inertia.error = {1e-300};
+  report.properties.push_back(inertia);
   const nlohmann::json json = nlohmann::json::parse(to_json(report));
   EXPECT_EQ(json["case"], report.title);
   EXPECT_EQ(json["properties"]["volume"]["value"].get<double>(), 0.1 + 0.2);
