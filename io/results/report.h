@@ -90,7 +90,7 @@ struct Timings {
 struct Report {
   std::string version;
   std::string title;
-  /// The case with overrides and defaults as TOML.
+  /// The case with its overrides as TOML; defaults are not spelled out.
   std::string resolved_case;
   RunStatus status = RunStatus::ok;
   GeometrySummary geometry;
