@@ -19,11 +19,11 @@
 /// The one adaptive scheme behind every integral: the order is raised in the directions that need it, then the piece
 /// is bisected, until the estimated error meets the piece's allowance.
 ///
-/// A piece is integrated by two tensor Gauss-Legendre rules, n - 2 and n points in each direction; the second is the
-/// value and their difference the estimate. It is an estimate of the error of the *first* rule, so for integrands that
-/// are analytic near the piece it is far above the error of the value. Where raising the order gains little (a
-/// kink, a cusp, a pole nearby) the estimate is enlarged by the sum of the geometric series that the observed gain
-/// suggests.
+/// A piece is integrated by tensor Gauss-Legendre rules of n, n - 1 and n - 2 points in each direction; the first is
+/// the value and its larger difference from the others the estimate (one difference alone can vanish by accident). It
+/// is an estimate of the errors of the *lesser* rules, so for integrands that are analytic near the piece it is far
+/// above the error of the value. Where more points gain little (a kink, a cusp, a pole nearby) the estimate is enlarged
+/// by the sum of the geometric series that the observed gain suggests.
 namespace isorim::quadrature {
 
 /// What AdaptiveIntegrator asks of the thing to integrate: K integrals at once over pieces of D-dimensional cells.
@@ -77,6 +77,13 @@ struct AdaptiveTotals {
 /// Orders above this gain less than a bisection does.
 inline constexpr int largest_adaptive_order = 24;
 
+/// The share of Options::max_bisections that one of several tasks may use.
+inline std::int64_t bisection_share(const Options& options, std::size_t tasks) {
+  constexpr std::int64_t least = 100;
+  return std::max<std::int64_t>(least,
+                                options.max_bisections / std::max<std::int64_t>(1, static_cast<std::int64_t>(tasks)));
+}
+
 template <PieceEvaluator Evaluator>
 class AdaptiveIntegrator {
  public:
@@ -86,7 +93,9 @@ class AdaptiveIntegrator {
 
   /// Evaluator and options outlive the integrator. options.fixed_points > 0: that rule alone, the estimate from a rule
   /// with two more points.
-  AdaptiveIntegrator(const Evaluator& evaluator, const Options& options) : evaluator_(evaluator), options_(options) {}
+  /// Makes at most `bisections` of them.
+  AdaptiveIntegrator(const Evaluator& evaluator, const Options& options, std::int64_t bisections)
+      : evaluator_(evaluator), options_(options), bisections_left_(bisections) {}
 
   /// One rule of `points` points in each direction over all pieces; no estimate of the error.
   AdaptiveTotals<Values> apply_rule(std::vector<Piece> pieces, int points) {
@@ -107,7 +116,6 @@ class AdaptiveIntegrator {
   /// Integrates over all pieces; the same pieces in the same order give the same bits.
   AdaptiveTotals<Values> integrate(std::vector<Piece> pieces) {
     totals_ = {};
-    bisections_left_ = static_cast<std::int64_t>(pieces.size()) * options_.max_bisections;
     work_ = std::move(pieces);
     std::reverse(work_.begin(), work_.end());
     while (!work_.empty()) next_batch();
@@ -174,14 +182,20 @@ class AdaptiveIntegrator {
     const Orders<directions> orders = orders_for(work_.back());
     std::vector<Piece> batch = take_batch([&](const Piece& piece) { return orders_for(piece) == orders; });
     std::array<Values, lanes> values;
-    std::array<Values, lanes> others;
+    std::array<Values, lanes> near;
+    std::array<Values, lanes> far;
+    const bool fixed = options_.fixed_points > 0;
     evaluate_batch(batch, orders, values);
-    evaluate_batch(batch, shifted(orders, options_.fixed_points > 0 ? 2 : -2), others);
+    evaluate_batch(batch, shifted(orders, fixed ? 1 : -1), near);
+    evaluate_batch(batch, shifted(orders, fixed ? 2 : -2), far);
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      Values difference = (values[i] - others[i]).abs();
+      near[i] = (values[i] - near[i]).abs();
+      far[i] = (values[i] - far[i]).abs();
+      Values difference =
+          fixed ? Values(far[i].max(near[i])) : estimate(far[i], near[i], evaluator_.noise(batch[i], values[i]));
       evaluator_.clear_exact(batch[i], orders, difference);
       State state{std::move(batch[i]), orders, values[i], difference};
-      if (options_.fixed_points > 0 || excess(state, difference) <= 1.0) {
+      if (fixed || excess(state, state.difference) <= 1.0) {
         totals_.add(state.value, state.difference);
       } else {
         refine(std::move(state));
@@ -194,16 +208,20 @@ class AdaptiveIntegrator {
     return (difference / evaluator_.allowance(state.piece, state.value)).maxCoeff();
   }
 
-  /// The estimate that belongs to `after`, reached from `before` by raising the order once. Where both are rounding,
-  /// no gain is to be expected.
-  static Values enlarged(const Values& before, const Values& after, const Values& noise) {
-    Values result = after;
-    for (Eigen::Index k = 0; k < after.size(); ++k) {
-      if (after[k] <= noise[k]) continue;
-      const double gain = before[k] > 0.0 ? std::min(after[k] / before[k], 0.9) : 0.0;
-      result[k] *= std::max(1.0, gain / (1.0 - gain));
+  /// A value differs by `far` from that of a rule and by `near` from that of a better one. Where the better rule gains
+  /// little, what is still missing is the geometric series that this gain suggests, as a factor of the difference.
+  static Values slowness(const Values& far, const Values& near, const Values& noise) {
+    Values factor = Values::Ones();
+    for (Eigen::Index k = 0; k < factor.size(); ++k) {
+      if (std::max(near[k], far[k]) <= noise[k]) continue;
+      const double gain = near[k] < 0.9 * far[k] ? near[k] / far[k] : 0.9;
+      factor[k] = std::max(1.0, gain / (1.0 - gain));
     }
-    return result;
+    return factor;
+  }
+
+  static Values estimate(const Values& far, const Values& near, const Values& noise) {
+    return far.max(near) * slowness(far, near, noise);
   }
 
   /// Raises the order where the error comes from while that helps; bisects otherwise.
@@ -229,7 +247,7 @@ class AdaptiveIntegrator {
         const Values value = evaluate(state.piece, raised);
         Values difference = (value - state.value).abs();
         evaluator_.clear_exact(state.piece, raised, difference);
-        difference = kept + enlarged(before, difference, evaluator_.noise(state.piece, value));
+        difference = kept + difference * slowness(before, difference, evaluator_.noise(state.piece, value));
         state = {std::move(state.piece), raised, value, difference};
         const double after = excess(state, state.difference);
         if (after <= 1.0) return totals_.add(state.value, state.difference);
@@ -239,13 +257,17 @@ class AdaptiveIntegrator {
     }
   }
 
-  /// The difference that each direction alone causes: the order lowered by two there.
+  /// The estimate of what each direction alone causes: the order lowered by one and two there.
   std::array<Values, directions> directional_differences(const State& state) {
+    const Values noise = evaluator_.noise(state.piece, state.value);
+    const auto difference = [&](std::size_t direction, int shift) -> Values {
+      Orders<directions> lowered = state.orders;
+      lowered[direction] = std::max(1, lowered[direction] + shift);
+      return (evaluate(state.piece, lowered) - state.value).abs();
+    };
     std::array<Values, directions> from;
     for (std::size_t d = 0; d < directions; ++d) {
-      Orders<directions> lowered = state.orders;
-      lowered[d] = std::max(1, lowered[d] - 2);
-      from[d] = (evaluate(state.piece, lowered) - state.value).abs();
+      from[d] = estimate(difference(d, -2), difference(d, -1), noise);
       evaluator_.clear_exact(state.piece, state.orders, from[d]);
     }
     return from;
@@ -264,7 +286,7 @@ class AdaptiveIntegrator {
 
   const Evaluator& evaluator_;
   const Options& options_;
-  std::int64_t bisections_left_ = 0;
+  std::int64_t bisections_left_;
   std::vector<Piece> work_;
   AdaptiveTotals<Values> totals_;
 };

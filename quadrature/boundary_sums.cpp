@@ -122,12 +122,17 @@ class SumsEvaluator {
   Values target_;
 };
 
-/// body(range, task) over the elements in ranges of elements_per_task, the tasks' totals added in order.
+template <int Dim>
+std::size_t task_count(const geometry::ElementTable<Dim>& table) {
+  return (table.elements.size() + elements_per_task - 1) / elements_per_task;
+}
+
+/// body(range) over the elements in ranges of elements_per_task, the tasks' totals added in order.
 template <int Dim, class Body>
 AdaptiveTotals<ElementSums<Dim>> sum_in_tasks(const geometry::ElementTable<Dim>& table, const Options& options,
                                               const std::function<void(double)>& progress, Body body) {
   const std::span<const geometry::BezierElement<Dim>> elements(table.elements);
-  const std::size_t tasks = (elements.size() + elements_per_task - 1) / elements_per_task;
+  const std::size_t tasks = task_count(table);
   std::vector<AdaptiveTotals<ElementSums<Dim>>> totals(tasks);
   const auto run = [&](std::size_t task, int) {
     const std::size_t begin = task * elements_per_task;
@@ -161,7 +166,7 @@ Scales<Dim> measure_scales(const geometry::ElementTable<Dim>& table, const geome
   const SumsEvaluator<Dim> evaluator(pole, scales, SumScope::measure_only, options.tolerance);
   constexpr int low_order = 3;
   const auto body = [&](std::span<const geometry::BezierElement<Dim>> elements) {
-    return AdaptiveIntegrator(evaluator, options).apply_rule(pieces_of(table, elements), low_order);
+    return AdaptiveIntegrator(evaluator, options, 0).apply_rule(pieces_of(table, elements), low_order);
   };
   scales.sums = sum_in_tasks(table, options, {}, body).sum;
   return scales;
@@ -186,11 +191,12 @@ BoundarySums<Dim> boundary_sums(const geometry::ElementTable<Dim>& table, const 
   using Layout = SumLayout<Dim>;
   Scales<Dim> scales = measure_scales(table, pole, options);
   AdaptiveTotals<ElementSums<Dim>> totals;
+  const std::int64_t bisections = bisection_share(options, task_count(table));
   // The first pass may overrate the content of a thin body: then its sums were a tolerance for the wrong body.
   for (int attempt = 0; attempt < 3; ++attempt) {
     const SumsEvaluator<Dim> evaluator(pole, scales, scope, options.tolerance);
     const auto body = [&](std::span<const geometry::BezierElement<Dim>> elements) {
-      return AdaptiveIntegrator(evaluator, options).integrate(pieces_of(table, elements));
+      return AdaptiveIntegrator(evaluator, options, bisections).integrate(pieces_of(table, elements));
     };
     totals = sum_in_tasks(table, options, options.progress, body);
     const double aimed_at = std::abs(scales.sums[Layout::content]);

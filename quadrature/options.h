@@ -19,9 +19,9 @@ struct Options {
   int threads = 0;
   /// Bisections of one element in a row before it is left as it is (and the missed tolerance reported).
   int max_depth = 24;
-  /// Bisections of an element in all, on average over the few elements that are integrated together; enough for a sharp
-  /// peak or cusp, and a bound on the time that a hopeless integrand takes.
-  int max_bisections = 2000;
+  /// Bisections in all, shared out among tasks of a few elements (each may make some hundred): enough for sharp peaks
+  /// and cusps, and a bound on the time that a hopeless integrand takes.
+  int max_bisections = 5000;
   /// Called now and then from one thread with the finished fraction in [0, 1]; may be empty.
   std::function<void(double)> progress;
 };

@@ -290,7 +290,7 @@ class Integration {
       for (std::size_t e = task * elements_per_task; e < std::min(count, (task + 1) * elements_per_task); ++e) {
         pieces.push_back(Evaluator<Dim>::make_piece(whole_element(table_, table_.elements[e])));
       }
-      AdaptiveIntegrator<Evaluator<Dim>> integrator(evaluator, options_);
+      AdaptiveIntegrator<Evaluator<Dim>> integrator(evaluator, options_, bisection_share(options_, tasks));
       totals[task] = step(integrator, std::move(pieces));
     };
     parallel_for(tasks, options_.threads, body, progress);
