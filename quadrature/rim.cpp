@@ -50,11 +50,43 @@ std::string describe(const geometry::Point<Dim>& x) {
   return text + ")";
 }
 
-/// What evaluators of either kind of integral share: the call of the integrand and the sharing out of the tolerance.
+/// What the evaluators of both kinds of integral share: the call of the integrand, the order to begin with, and the
+/// sharing out of the tolerance, equally among elements and their halves.
 template <int Dim>
-class IntegrandCall {
+class FunctionEvaluator {
  public:
-  IntegrandCall(const Integrand<Dim>& integrand, double target) : integrand_(integrand), target_(target) {}
+  using Values = quadrature::Values;
+  static constexpr int batch_size = 1;
+
+  FunctionEvaluator(const Integrand<Dim>& integrand, std::size_t elements, double target, double tolerance)
+      : integrand_(integrand), elements_(elements), target_(target), tolerance_(tolerance) {}
+
+  bool same_kind(const ElementPiece<Dim>&, const ElementPiece<Dim>&) const { return false; }
+
+  Values allowance(const ElementPiece<Dim>& piece, const Values& value) const {
+    const double share = std::ldexp(1.0 / static_cast<double>(elements_), -piece.depth);
+    Values allowed = noise(piece, value);
+    allowed[signed_value] = std::max(allowed[signed_value], target_ * share);
+    return allowed;
+  }
+
+  Values noise(const ElementPiece<Dim>&, const Values& value) const {
+    Values noise = Values::Constant(std::numeric_limits<double>::max());
+    noise[signed_value] = std::max(difference_noise * value[rounding_scale], std::numeric_limits<double>::min());
+    return noise;
+  }
+
+  template <class AnyOrders>
+  void clear_exact(const ElementPiece<Dim>&, const AnyOrders&, Values&) const {}
+
+ protected:
+  /// What the element's map needs for the moments; the integrand adds to it, but seldom more than the error estimate
+  /// then asks for.
+  Orders<Dim - 1> element_orders(const ElementPiece<Dim>& piece) const {
+    Orders<Dim - 1> orders = expected_orders(piece, tolerance_);
+    for (int& order : orders) order = std::clamp(order + 1, least_order_for_functions, largest_adaptive_order);
+    return orders;
+  }
 
   /// Sum of weights[i] f(points_i), of its absolute values, and of those of scales[i] f(points_i). Throws
   /// NumericalError at a value that is not finite.
@@ -76,49 +108,27 @@ class IntegrandCall {
     return sum;
   }
 
-  Values allowance(double share, const Values& value) const {
-    Values allowed = noise(value);
-    allowed[signed_value] = std::max(allowed[signed_value], target_ * share);
-    return allowed;
-  }
-
-  Values noise(const Values& value) const {
-    Values noise = Values::Constant(std::numeric_limits<double>::max());
-    noise[signed_value] = std::max(difference_noise * value[rounding_scale], std::numeric_limits<double>::min());
-    return noise;
-  }
-
  private:
   const Integrand<Dim>& integrand_;
+  std::size_t elements_;
   double target_;
+  double tolerance_;
 };
-
-/// The order to begin with: what the element's map needs for the moments (the integrand adds to it, but seldom more
-/// than the error estimate then asks for).
-template <int Dim>
-Orders<Dim - 1> element_orders(const ElementPiece<Dim>& piece, double tolerance) {
-  Orders<Dim - 1> orders = expected_orders(piece, tolerance);
-  for (int& order : orders) order = std::clamp(order + 1, least_order_for_functions, largest_adaptive_order);
-  return orders;
-}
 
 /// int f dS over pieces of the boundary.
 template <int Dim>
-class BoundaryEvaluator {
+class BoundaryEvaluator : public FunctionEvaluator<Dim> {
  public:
   using Piece = ElementPiece<Dim>;
-  using Values = quadrature::Values;
   static constexpr int directions = Dim - 1;
-  static constexpr int batch_size = 1;
 
   BoundaryEvaluator(const Integrand<Dim>& integrand, const geometry::Point<Dim>&, std::size_t elements, double target,
                     double tolerance)
-      : call_(integrand, target), elements_(elements), tolerance_(tolerance) {}
+      : FunctionEvaluator<Dim>(integrand, elements, target, tolerance) {}
 
   static Piece make_piece(ElementPiece<Dim> piece) { return piece; }
 
-  Orders<directions> start_orders(const Piece& piece) const { return element_orders(piece, tolerance_); }
-  bool same_kind(const Piece&, const Piece&) const { return false; }
+  Orders<directions> start_orders(const Piece& piece) const { return this->element_orders(piece); }
 
   void evaluate(std::span<const Piece* const> pieces, const Orders<directions>& orders,
                 std::span<Values> values) const {
@@ -131,21 +141,10 @@ class BoundaryEvaluator {
       weights[static_cast<std::size_t>(i)] = measure;
       if (measure > 0.0) samples.normals.col(i) /= measure;
     }
-    values.front() = call_.weighted_sum(samples.points, samples.normals, weights, weights);
+    values.front() = this->weighted_sum(samples.points, samples.normals, weights, weights);
   }
 
   std::pair<Piece, Piece> split(const Piece& piece, int direction) const { return bisect(piece, direction); }
-
-  Values allowance(const Piece& piece, const Values& value) const {
-    return call_.allowance(std::ldexp(1.0 / static_cast<double>(elements_), -piece.depth), value);
-  }
-  Values noise(const Piece&, const Values& value) const { return call_.noise(value); }
-  void clear_exact(const Piece&, const Orders<directions>&, Values&) const {}
-
- private:
-  IntegrandCall<Dim> call_;
-  std::size_t elements_;
-  double tolerance_;
 };
 
 /// A frustum of the cone from the pole over a piece of the boundary: the rays' part t in `radial`.
@@ -156,28 +155,24 @@ struct ConePiece : ElementPiece<Dim> {
 
 /// int_Omega f over cones: the element's directions and, last, the direction of the rays.
 template <int Dim>
-class ConeEvaluator {
+class ConeEvaluator : public FunctionEvaluator<Dim> {
  public:
   using Piece = ConePiece<Dim>;
-  using Values = quadrature::Values;
   static constexpr int directions = Dim;
-  static constexpr int batch_size = 1;
 
   ConeEvaluator(const Integrand<Dim>& integrand, const geometry::Point<Dim>& pole, std::size_t elements, double target,
                 double tolerance)
-      : call_(integrand, target), pole_(pole), elements_(elements), tolerance_(tolerance) {}
+      : FunctionEvaluator<Dim>(integrand, elements, target, tolerance), pole_(pole) {}
 
   static Piece make_piece(ElementPiece<Dim> piece) { return {std::move(piece), {0.0, 1.0}}; }
 
   Orders<directions> start_orders(const Piece& piece) const {
-    const Orders<Dim - 1> on_element = element_orders<Dim>(piece, tolerance_);
+    const Orders<Dim - 1> on_element = this->element_orders(piece);
     Orders<directions> orders;
     std::copy(on_element.begin(), on_element.end(), orders.begin());
     orders[Dim - 1] = least_order_for_functions;
     return orders;
   }
-  bool same_kind(const Piece&, const Piece&) const { return false; }
-
   void evaluate(std::span<const Piece* const> pieces, const Orders<directions>& orders,
                 std::span<Values> values) const {
     static thread_local PieceSamples<Dim> samples;
@@ -206,13 +201,12 @@ class ConeEvaluator {
       }
     }
     static const geometry::Points<Dim> no_normals(Dim, 0);
-    values.front() = call_.weighted_sum(points, no_normals, weights, scales);
+    values.front() = this->weighted_sum(points, no_normals, weights, scales);
   }
 
   std::pair<Piece, Piece> split(const Piece& piece, int direction) const {
     if (direction < Dim - 1) {
       auto [first, second] = bisect<Dim>(piece, direction);
-      // Named, so that the pair moves them: the net of a copy would lie in the original.
       return {Piece{std::move(first), piece.radial}, Piece{std::move(second), piece.radial}};
     }
     Piece first = piece;
@@ -222,17 +216,8 @@ class ConeEvaluator {
     return {std::move(first), std::move(second)};
   }
 
-  Values allowance(const Piece& piece, const Values& value) const {
-    return call_.allowance(std::ldexp(1.0 / static_cast<double>(elements_), -piece.depth), value);
-  }
-  Values noise(const Piece&, const Values& value) const { return call_.noise(value); }
-  void clear_exact(const Piece&, const Orders<directions>&, Values&) const {}
-
  private:
-  IntegrandCall<Dim> call_;
   geometry::Point<Dim> pole_;
-  std::size_t elements_;
-  double tolerance_;
 };
 
 /// Integrals over the elements, a few in a task (an integrand costs far more than the geometry).

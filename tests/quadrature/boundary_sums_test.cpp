@@ -10,6 +10,7 @@
 #include "geometry/shapes/regions.h"
 #include "geometry/shapes/solids.h"
 #include "quadrature/element_piece.h"
+#include "tests/quadrature/hollow.h"
 #include "tests/quadrature/random_elements.h"
 
 namespace isorim::quadrature {
@@ -224,15 +225,7 @@ TEST(BoundarySums, PolynomialElementsAreExact) {
 
 /// A thin spherical shell: its volume is what remains when nearly everything cancels.
 TEST(BoundarySums, ThinShellKeepsItsRelativeTolerance) {
-  ElementTable<3> table = bezier_elements(geometry::sphere(1.0));
-  const ElementTable<3> inner = bezier_elements(geometry::sphere(1.0 - 1e-6));
-  const std::size_t shift = table.nets.size();
-  table.nets.insert(table.nets.end(), inner.nets.begin(), inner.nets.end());
-  for (geometry::BezierElement<3> element : inner.elements) {
-    element.offset += shift;
-    element.orientation = -1;
-    table.elements.push_back(element);
-  }
+  const ElementTable<3> table = testing::hollow(geometry::sphere(1.0), geometry::sphere(1.0 - 1e-6));
   Options options;
   options.tolerance = 1e-8;
   const BoundarySums<3> sums = boundary_sums(table, Point3(0.0, 0.0, 0.0), SumScope::all, options);

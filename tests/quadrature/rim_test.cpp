@@ -12,6 +12,7 @@
 #include "geometry/errors.h"
 #include "geometry/shapes/regions.h"
 #include "geometry/shapes/solids.h"
+#include "tests/quadrature/hollow.h"
 
 namespace isorim::quadrature {
 namespace {
@@ -47,16 +48,7 @@ IntegrandFactory<2> in_plane(const std::function<double(const Point2&)>& f) {
 }
 
 ElementTable<2> annulus(double inner, double outer) {
-  ElementTable<2> table = bezier_elements(geometry::disc(outer));
-  const ElementTable<2> hole = bezier_elements(geometry::disc(inner));
-  const std::size_t shift = table.nets.size();
-  table.nets.insert(table.nets.end(), hole.nets.begin(), hole.nets.end());
-  for (geometry::BezierElement<2> element : hole.elements) {
-    element.offset += shift;
-    element.orientation = -1;
-    table.elements.push_back(element);
-  }
-  return table;
+  return testing::hollow(geometry::disc(outer), geometry::disc(inner));
 }
 
 /// G. B. Folland, Amer. Math. Monthly 108, 2001: the integral of a monomial over the unit ball.
