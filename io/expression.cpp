@@ -105,7 +105,7 @@ template <int Dim>
   const std::size_t position = std::min(static_cast<std::size_t>(error.GetPos()), text.size());
   if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && is_name(error.GetToken())) {
     // muParser counts from the end of a name in some versions: look for it itself.
-    const std::string name = error.GetToken();
+    const std::string& name = error.GetToken();
     const std::size_t begin = text.compare(position, name.size(), name) == 0 ? position : text.find(name);
     const std::string whole = begin == std::string::npos ? name : name_at(text, begin);
     throw InputError(fmt::format("{}found {}; expected {}", at_character(std::min(begin, position)),

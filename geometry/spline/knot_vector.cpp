@@ -94,7 +94,8 @@ KnotVector KnotVector::periodic(int degree, std::span<const double> breakpoints)
   // The i-th knot beyond an end lies some whole periods and the distance to one breakpoint away from it: distances
   // of repeated breakpoints are equal bit for bit, so multiplicities survive the seam.
   for (std::size_t i = 1; i <= p; ++i) {
-    const double whole = static_cast<double>((i - 1) / intervals) * period;
+    const std::size_t whole_periods = (i - 1) / intervals;
+    const double whole = static_cast<double>(whole_periods) * period;
     const std::size_t step = (i - 1) % intervals + 1;
     knots[p - i] = first - (whole + (last - breakpoints[intervals - step]));
     knots[p + intervals + i] = last + (whole + (breakpoints[step] - first));
