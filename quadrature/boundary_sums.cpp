@@ -25,7 +25,8 @@ constexpr std::size_t elements_per_task = 64;
 /// How large a shape is, from a first pass with a low rule.
 template <int Dim>
 struct Scales {
-  /// Largest distance of a control point from the pole, and largest absolute coordinate.
+  /// Largest distance of a control point from the pole, and largest absolute coordinate (of the pole, too: positions
+  /// are taken relative to it).
   double radius = 0.0;
   double coordinate = 0.0;
   ElementSums<Dim> sums = ElementSums<Dim>::Zero();
@@ -62,14 +63,11 @@ class SumsEvaluator {
       : pole_(pole), scales_(scales), tolerance_(tolerance) {
     target_.fill(std::numeric_limits<double>::max());
     target_[Layout::measure] = tolerance * scales.sums[Layout::measure];
-    if (scope == SumScope::measure_only) return;
-    const double content = std::abs(scales.sums[Layout::content]);
-    const double second = std::abs(scales.sums.template segment<Dim>(Layout::second).sum());
-    target_.template segment<Dim>(Layout::normal).fill(tolerance * scales.sums[Layout::measure]);
-    target_[Layout::content] = tolerance * content;
-    target_.template segment<Dim>(Layout::first).fill(tolerance * content * scales.radius);
-    target_.template segment<Layout::count - Layout::second>(Layout::second).fill(tolerance * second);
+    if (scope == SumScope::all) set_domain_targets();
   }
+
+  /// Errors of the sums over all pieces that the tolerance asks for.
+  const Values& target() const { return target_; }
 
   Orders<directions> start_orders(const Piece& piece) const { return expected_orders(piece, tolerance_); }
 
@@ -116,6 +114,25 @@ class SumsEvaluator {
   }
 
  private:
+  /// Such that the content, the centroid relative to the size, and the inertia about the centroid meet the tolerance.
+  /// The last is what a pole far from the centroid makes hard: errors of content and first moments enter it with
+  /// powers of that distance.
+  void set_domain_targets() {
+    const Values& sums = scales_.sums;
+    const double content = std::abs(sums[Layout::content]);
+    const double measure = content / Dim;
+    const double first = sums.template segment<Dim>(Layout::first).matrix().norm() / (Dim + 1);
+    const double about_pole = std::abs(sums.template segment<Dim>(Layout::second).sum()) / (Dim + 2);
+    const double about_centroid = std::max(about_pole - first * first / measure, 1e-3 * about_pole);
+    const double offset = first / measure;
+    const double inertia_error = tolerance_ * (Dim - 1) * about_centroid;
+    target_.template segment<Dim>(Layout::normal).fill(tolerance_ * sums[Layout::measure]);
+    target_[Layout::content] = std::min(tolerance_ * content, 0.2 * Dim * inertia_error / (offset * offset));
+    target_.template segment<Dim>(Layout::first)
+        .fill(std::min(tolerance_ * content * scales_.radius, 0.1 * (Dim + 1) / Dim * inertia_error / offset));
+    target_.template tail<Layout::count - Layout::second>().fill(0.5 * (Dim + 2) / Dim * inertia_error);
+  }
+
   geometry::Point<Dim> pole_;
   const Scales<Dim>& scales_;
   double tolerance_;
@@ -161,7 +178,8 @@ Scales<Dim> measure_scales(const geometry::ElementTable<Dim>& table, const geome
   Scales<Dim> scales;
   const geometry::BoundingBox<Dim> box = geometry::bounding_box(table);
   scales.radius = (box.lower - pole).cwiseAbs().cwiseMax((box.upper - pole).cwiseAbs()).norm();
-  scales.coordinate = std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
+  scales.coordinate =
+      std::max({box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff(), pole.cwiseAbs().maxCoeff()});
   scales.elements = table.elements.size();
   const SumsEvaluator<Dim> evaluator(pole, scales, SumScope::measure_only, options.tolerance);
   constexpr int low_order = 3;
@@ -172,13 +190,27 @@ Scales<Dim> measure_scales(const geometry::ElementTable<Dim>& table, const geome
   return scales;
 }
 
-/// What rounding may cost: of the sums themselves, and of positions that are stored to a relative epsilon.
+/// The sums that scale the tolerance differ by a tenth at most.
+template <int Dim>
+bool similar_size(const ElementSums<Dim>& a, const ElementSums<Dim>& b) {
+  using Layout = SumLayout<Dim>;
+  const auto similar = [](double x, double y) { return std::abs(x - y) <= 0.1 * std::abs(y); };
+  return similar(a[Layout::measure], b[Layout::measure]) && similar(a[Layout::content], b[Layout::content]) &&
+         similar(a.template segment<Dim>(Layout::second).sum(), b.template segment<Dim>(Layout::second).sum());
+}
+
+/// What rounding may cost: of the sums themselves, and of positions that are known to a relative epsilon. The latter
+/// turns each element's tangents by its error over the element's size; over many elements that adds up like a random
+/// walk, to the error times the square root of the area (of the number of elements in the plane).
 template <int Dim>
 ElementSums<Dim> rounding_error(const Scales<Dim>& scales, const AdaptiveTotals<ElementSums<Dim>>& totals) {
+  using Layout = SumLayout<Dim>;
   ElementSums<Dim> error = 2.0 * epsilon * totals.magnitude;
-  const double position = epsilon * scales.coordinate * totals.sum[SumLayout<Dim>::measure];
-  for (int k = SumLayout<Dim>::content; k < SumLayout<Dim>::count; ++k) {
-    error[k] += position * std::pow(scales.radius, power_of_distance<Dim>(k) - 1);
+  const double position = epsilon * scales.coordinate;
+  const double measure = totals.sum[Layout::measure];
+  error[Layout::measure] += 4.0 * position * std::sqrt(Dim == 3 ? measure : static_cast<double>(scales.elements));
+  for (int k = Layout::content; k < Layout::count; ++k) {
+    error[k] += position * measure * std::pow(scales.radius, power_of_distance<Dim>(k) - 1);
   }
   return error;
 }
@@ -192,16 +224,17 @@ BoundarySums<Dim> boundary_sums(const geometry::ElementTable<Dim>& table, const 
   Scales<Dim> scales = measure_scales(table, pole, options);
   AdaptiveTotals<ElementSums<Dim>> totals;
   const std::int64_t bisections = bisection_share(options, task_count(table));
-  // The first pass may overrate the content of a thin body: then its sums were a tolerance for the wrong body.
+  // The first pass may overrate the sums, above all the content of a thin body; then the targets were too wide.
   for (int attempt = 0; attempt < 3; ++attempt) {
     const SumsEvaluator<Dim> evaluator(pole, scales, scope, options.tolerance);
     const auto body = [&](std::span<const geometry::BezierElement<Dim>> elements) {
       return AdaptiveIntegrator(evaluator, options, bisections).integrate(pieces_of(table, elements));
     };
     totals = sum_in_tasks(table, options, options.progress, body);
-    const double aimed_at = std::abs(scales.sums[Layout::content]);
+    const bool scales_were_right = similar_size<Dim>(totals.sum, scales.sums);
     scales.sums = totals.sum;
-    if (options.fixed_points > 0 || std::abs(totals.sum[Layout::content]) > 0.5 * aimed_at) break;
+    const ElementSums<Dim> wanted = SumsEvaluator<Dim>(pole, scales, scope, options.tolerance).target();
+    if (options.fixed_points > 0 || scales_were_right || (totals.error <= wanted).all()) break;
   }
   const bool exact = std::all_of(table.elements.begin(), table.elements.end(),
                                  [](const geometry::BezierElement<Dim>& element) { return element.polynomial; });

@@ -27,8 +27,9 @@ struct BoundarySums {
 /// Which sums the tolerance of Options is aimed at. The rest is computed all the same.
 enum class SumScope { measure_only, all };
 
-/// Adaptive, in parallel, the same bits for any number of threads. The tolerance is relative to: the measure; the
-/// content; the content times the size (first moments); the second moments' trace, all about the pole.
+/// Adaptive, in parallel, the same bits for any number of threads. The tolerance is relative to the measure; to the
+/// content; to the size for the centroid that the first moments give; and to its trace for the inertia about the
+/// centroid.
 template <int Dim>
 BoundarySums<Dim> boundary_sums(const geometry::ElementTable<Dim>& table, const geometry::Point<Dim>& pole,
                                 SumScope scope, const Options& options);

@@ -109,6 +109,25 @@ TEST(Properties, InvertedBoundaryIsRefused) {
   }
 }
 
+// The middle of the control net is one radius away from the centre of this circle of a single Bézier curve (J. J. Chou,
+// Computer-Aided Design 27, 1995), and the low rule of the first pass misjudges its size.
+TEST(Properties, ToleranceIsMetWithThePoleFarFromTheCentroid) {
+  geometry::HomogeneousPoints<2> net(3, 6);
+  net << 5, 1, -3, -3, 1, 5,  //
+      0, 4, 2, -2, -4, 0,     //
+      5, 1, 1, 1, 1, 5;
+  const geometry::NurbsCurve<2> circle(geometry::KnotVector::bezier(5), net);
+  const auto table = bezier_elements(geometry::Boundary<2>{{{"circle", circle, 1}}});
+  for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12}) {
+    PropertyOptions<2> options;
+    options.integration.tolerance = tolerance;
+    const auto result = geometric_properties(table, options);
+    EXPECT_EQ(result.domain_status, Status::converged) << tolerance;
+    EXPECT_LE(result.domain->inertia_error, tolerance * pi / 2.0) << tolerance;
+    EXPECT_NEAR(result.domain->inertia(0, 0), pi / 4.0, 2.0 * result.domain->inertia_error) << tolerance;
+  }
+}
+
 TEST(Properties, UnreachableToleranceIsReported) {
   PropertyOptions<3> options;
   options.integration.tolerance = 1e-17;
