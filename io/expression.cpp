@@ -48,6 +48,21 @@ std::string at_character(std::size_t position) {
   return fmt::format("at character {}: ", position + 1);
 }
 
+/// The text as messages show it: no longer than a line.
+std::string excerpt(const std::string& text) {
+  constexpr std::size_t most = 60;
+  return text.size() <= most ? text : text.substr(0, most) + "...";
+}
+
+/// muParser would end the text at a NUL and stumble over the others; white space is no such character.
+void refuse_control_characters(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if (std::iscntrl(c) == 0 || std::isspace(c) != 0) continue;
+    throw InputError(fmt::format("{}found the control character {:#04x}", at_character(i), c));
+  }
+}
+
 /// muParser would take "x = 1" as an assignment.
 void refuse_assignment(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -100,7 +115,7 @@ std::string message_of(const mu::Parser::exception_type& error) {
 template <int Dim>
 [[noreturn]] void report(const mu::Parser::exception_type& error, const std::string& text, ExpressionScope scope) {
   if (error.GetCode() == mu::ecUNEXPECTED_EOF || error.GetPos() < 0) {
-    throw InputError(fmt::format("at the end of \"{}\": {}", text, message_of(error)));
+    throw InputError(fmt::format("at the end of \"{}\": {}", excerpt(text), message_of(error)));
   }
   const std::size_t position = std::min(static_cast<std::size_t>(error.GetPos()), text.size());
   if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && is_name(error.GetToken())) {
@@ -111,7 +126,7 @@ template <int Dim>
     throw InputError(fmt::format("{}found {}; expected {}", at_character(std::min(begin, position)),
                                  name_reason<Dim>(whole, scope), known_names<Dim>(scope)));
   }
-  throw InputError(fmt::format("{}in \"{}\": {}", at_character(position), text, message_of(error)));
+  throw InputError(fmt::format("{}in \"{}\": {}", at_character(position), excerpt(text), message_of(error)));
 }
 
 /// Parses and evaluates once, so that every fault shows now and not in a thread.
@@ -120,12 +135,14 @@ void check(const std::string& text, ExpressionScope scope) {
   if (std::all_of(text.begin(), text.end(), [](char c) { return std::isspace(static_cast<unsigned char>(c)); })) {
     throw InputError("found an empty expression");
   }
+  refuse_control_characters(text);
   refuse_assignment(text);
   try {
     BoundParser<Dim> bound(text, scope);
     bound.parser.Eval();
     if (const int count = bound.parser.GetNumResults(); count != 1) {
-      throw InputError(fmt::format("found {} expressions in \"{}\", separated by commas; expected one", count, text));
+      throw InputError(
+          fmt::format("found {} expressions in \"{}\", separated by commas; expected one", count, excerpt(text)));
     }
   } catch (const mu::Parser::exception_type& error) {
     report<Dim>(error, text, scope);

@@ -99,7 +99,9 @@ class FunctionEvaluator {
     for (std::size_t i = 0; i < weights.size(); ++i) {
       if (!std::isfinite(values[i])) {
         const geometry::Point<Dim> where = points.col(static_cast<Eigen::Index>(i));
-        throw NumericalError(fmt::format("the integrand is {} at {}", values[i], describe<Dim>(where)));
+        // A NaN may have a sign, which says nothing.
+        const std::string found = std::isnan(values[i]) ? "nan" : fmt::format("{}", values[i]);
+        throw NumericalError(fmt::format("the integrand is {} at {}", found, describe<Dim>(where)));
       }
       sum[signed_value] += weights[i] * values[i];
       sum[absolute_value] += std::abs(weights[i] * values[i]);

@@ -13,8 +13,12 @@
 /// Checks that curves and surfaces share; for the .cpp files of this folder.
 namespace isorim::geometry {
 
-/// Throws GeometryError unless every weight is positive and finite and every coordinate finite. index_name turns the
-/// number of a column into what the user calls that control point.
+/// Weights that differ by more leave a basis function without digits, and draw all but a sliver of the parameters to
+/// one point.
+inline constexpr double largest_weight_ratio = 1e10;
+
+/// Throws GeometryError unless every weight is positive and finite, their ratios at most largest_weight_ratio, and
+/// every coordinate finite. index_name turns the number of a column into what the user calls that control point.
 template <int Dim, class IndexName>
 void require_valid_net(const HomogeneousPoints<Dim>& net, std::string_view entity, const IndexName& index_name) {
   for (Eigen::Index i = 0; i < net.cols(); ++i) {
@@ -28,6 +32,12 @@ void require_valid_net(const HomogeneousPoints<Dim>& net, std::string_view entit
             fmt::format("{}: coordinate {} of control point {} (times its weight) is {}; expected a finite number",
                         entity, "xyz"[d], index_name(i), net(d, i)));
   }
+  if (net.cols() == 0) return;
+  const double least = net.row(Dim).minCoeff();
+  const double most = net.row(Dim).maxCoeff();
+  if (most > largest_weight_ratio * least)
+    throw GeometryError(fmt::format("{}: the weights range from {:g} to {:g}; expected a ratio of at most {:g}", entity,
+                                    least, most, largest_weight_ratio));
 }
 
 /// Cartesian points and weights (none: all 1) as homogeneous points. Throws GeometryError if the counts differ.

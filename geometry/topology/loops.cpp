@@ -15,6 +15,7 @@
 #include "geometry/errors.h"
 #include "geometry/intersection/loop_contacts.h"
 #include "geometry/intersection/plane_pieces.h"
+#include "geometry/topology/coincidence.h"
 #include "geometry/topology/orientation.h"
 #include "geometry/topology/point_clusters.h"
 
@@ -47,7 +48,8 @@ void check_continuity(const Patch<2>& patch, const std::vector<PlanePiece>& piec
     }
   }
   if (extent <= tolerance) {
-    throw GeometryError(fmt::format("patch '{}': the whole curve lies at {}", patch.name, at(pieces[0].start())));
+    throw GeometryError(fmt::format("patch '{}': the whole curve lies at {}, within the closure tolerance {:.2g}",
+                                    patch.name, at(pieces[0].start()), tolerance));
   }
 }
 
@@ -403,8 +405,7 @@ OrientedBoundary<2> orient<2>(const Boundary<2>& boundary, const OrientationOpti
   if (boundary.patches.empty()) throw GeometryError("the boundary has no patches");
   const ElementTable<2> table = bezier_elements(boundary);
   OrientedBoundary<2> result{boundary, {}};
-  const double tolerance = options.tolerance * bounding_box(table).diagonal();
-  if (tolerance == 0.0) throw GeometryError("all points of the boundary coincide");
+  const double tolerance = coincidence_tolerance(bounding_box(table), options.tolerance);
   result.topology.tolerance = tolerance;
 
   const std::vector<std::vector<PlanePiece>> pieces = pieces_of_patches(boundary, table);

@@ -10,6 +10,7 @@
 
 #include "geometry/bezier/element_table.h"
 #include "geometry/errors.h"
+#include "geometry/topology/coincidence.h"
 #include "geometry/topology/edge_matching.h"
 #include "geometry/topology/enclosed_volume.h"
 #include "geometry/topology/orientation.h"
@@ -198,8 +199,7 @@ OrientedBoundary<3> orient<3>(const Boundary<3>& boundary, const OrientationOpti
   const ElementTable<3> table = bezier_elements(boundary);
   OrientedBoundary<3> result{boundary, {}};
   Topology<3>& topology = result.topology;
-  topology.tolerance = options.tolerance * bounding_box(table).diagonal();
-  if (topology.tolerance == 0.0) throw GeometryError("all points of the boundary coincide");
+  topology.tolerance = coincidence_tolerance(bounding_box(table), options.tolerance);
 
   const EdgeMatching matching = match_edges(boundary, topology.tolerance);
   topology.largest_gap = matching.largest_gap;

@@ -42,6 +42,8 @@ void complain_unknown_quantity(const std::string& name, const std::vector<std::s
 void check_integrals(const CaseKeys& keys, int dim, Complaints& complaints) {
   std::vector<std::string> taken = property_names(dim);
   for (const IntegralKeys& integral : keys.integral) {
+    // Already complained of.
+    if (integral.name.empty()) continue;
     if (contains(taken, integral.name)) {
       complaints.add(integral.where,
                      fmt::format("the name \"{}\" is taken by {}", integral.name,
@@ -91,9 +93,10 @@ void check_convergence(const CaseKeys& keys, int dim, Complaints& complaints) {
   }
 }
 
-/// Every integrand must parse.
+/// Every integrand must parse; an empty one has been complained of.
 void check_integrands(const CaseKeys& keys, int dim, Complaints& complaints) {
   for (const IntegralKeys& integral : keys.integral) {
+    if (integral.integrand.empty()) continue;
     const auto scope = integral.over == IntegralOver::domain ? ExpressionScope::domain : ExpressionScope::boundary;
     try {
       if (dim == 2) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,7 @@ class Complaints {
   /// A message that already says where.
   void add(std::string message);
   bool empty() const { return entries_.empty(); }
+  std::size_t count() const { return entries_.size(); }
   /// Throws InputError with every complaint, one a line, in the order of the file.
   void throw_if_any() const;
 

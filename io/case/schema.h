@@ -377,10 +377,10 @@ class Schema {
         good &= readers_[i](*found, target, where.key(name, found->place), complaints);
       }
     }
-    if (good) {
-      for (const auto& rule : checks_) rule(target, where, complaints);
-    }
-    return good;
+    if (!good) return false;
+    const std::size_t before = complaints.count();
+    for (const auto& rule : checks_) rule(target, where, complaints);
+    return complaints.count() == before;
   }
 
  private:

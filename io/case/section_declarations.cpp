@@ -73,6 +73,9 @@ const Schema<IntegralKeys>& schema<IntegralKeys>() {
               complaints.add(where.key("name", where.place),
                              fmt::format("found \"{}\"; expected letters, digits, _ and -", integral.name));
             }
+            if (integral.integrand.empty()) {
+              complaints.add(where.key("integrand", where.place), "found an empty expression");
+            }
             if (integral.pole && integral.over == IntegralOver::boundary) {
               complaints.add(integral.pole->where, "an integral over a boundary has no pole");
             }
@@ -147,7 +150,7 @@ const Schema<CountRange>& schema<CountRange>() {
       Schema<CountRange>("range", "Counts from one number to another.")
           .key("from", &CountRange::from, {.text = "First.", .range = Range::between(1, 128)})
           .key("to", &CountRange::to, {.text = "Last.", .range = Range::between(1, 128), .presence = required})
-          .key("step", &CountRange::step, {.text = "Stride.", .range = Range::at_least(1)})
+          .key("step", &CountRange::step, {.text = "Stride.", .range = Range::between(1, 128)})
           .check([](const CountRange& range, const KeyPlace& where, Complaints& complaints) {
             if (range.from > range.to) {
               complaints.add(where, fmt::format("found from = {} above to = {}", range.from, range.to));

@@ -106,7 +106,7 @@ int print_help(const HelpArguments& arguments, std::ostream& out) {
     out << (arguments.topic.size() == 1 ? io::case_overview() : io::case_topic(arguments.topic[1]));
   } else {
     check_command(app, arguments.topic.front(), "topic");
-    out << app.get_subcommand(arguments.topic.front())->help();
+    out << app.get_subcommand(arguments.topic.front())->help("isorim");
   }
   return 0;
 }

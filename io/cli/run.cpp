@@ -2,11 +2,13 @@
 #include <ostream>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
 #include "io/cli/commands.h"
+#include "io/cli/interrupts.h"
 #include "io/results/compute.h"
 #include "io/results/convergence.h"
 #include "io/results/hdf5.h"
@@ -33,6 +35,7 @@ void make_folder(const std::filesystem::path& folder) {
 
 void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io::Convergence& study,
                    io::Report& report, const std::filesystem::path& folder) {
+  const HeldInterrupts held;
   const Clock::time_point start = Clock::now();
   make_folder(folder);
   const io::OutputKeys& output = file.keys.output;
@@ -47,6 +50,25 @@ void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io
   report.timings.write = seconds_since(start);
   // Last: whoever finds it finds the rest as well.
   io::write_json(folder / "results.json", report);
+}
+
+/// Why the exit status is 1 or 3, for whoever sees no table.
+void print_shortfalls(const io::Report& report, const std::string& file, std::ostream& err) {
+  std::vector<std::string> unreached;
+  for (const auto* list : {&report.properties, &report.integrals}) {
+    for (const io::Quantity& quantity : *list) {
+      if (quantity.status == quadrature::Status::tolerance_not_reached) unreached.push_back(quantity.name);
+    }
+  }
+  if (!unreached.empty()) {
+    print_message(err, fmt::format("{}: the tolerance is not reached: {}", file, fmt::join(unreached, ", ")));
+  }
+  for (const io::ExpectationResult& result : report.expectations) {
+    if (result.met) continue;
+    const std::string off = result.difference ? fmt::format("off by {:.2g}", *result.difference) : "without a value";
+    print_message(err, fmt::format("{}: the expectation of {} is missed: {}; expected at most atol = {:g}, rtol = {:g}",
+                                   file, result.quantity, off, result.atol, result.rtol));
+  }
 }
 
 }  // namespace
@@ -70,6 +92,7 @@ int run_case(const RunArguments& arguments, std::ostream& out, std::ostream& err
   for (const std::string& warning : report.warnings) {
     print_message(err, fmt::format("{}: {}", arguments.case_file.string(), warning));
   }
+  print_shortfalls(report, arguments.case_file.string(), err);
   if (arguments.verbosity == Verbosity::normal) {
     out << io::results_text(report) << fmt::format("  results in {}\n", folder.string());
   }

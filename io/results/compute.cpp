@@ -225,6 +225,16 @@ Quantity integrate(const CaseFile& file, const IntegralKeys& keys, const Model<D
   }
 }
 
+/// Sound numbers can leave the range of double precision: a mass of a great density, say.
+void check_finite(const std::vector<Quantity>& quantities, const std::string& file) {
+  for (const Quantity& quantity : quantities) {
+    for (const double x : quantity.value.values) {
+      if (std::isfinite(x)) continue;
+      throw NumericalError(fmt::format("{}: {} is {}; expected a finite number", file, quantity.name, x));
+    }
+  }
+}
+
 // --- Expectations ---------------------------------------------------------------------------------------------
 
 void compare_expectations(const CaseFile& file, Report& report) {
@@ -261,6 +271,8 @@ Report report_of(const CaseFile& file, const Model<Dim>& model, const RunOptions
   report.geometry = summary_of(model);
   add_properties(file, model, run, report);
   for (const IntegralKeys& keys : file.keys.integral) report.integrals.push_back(integrate(file, keys, model, run));
+  check_finite(report.properties, file.path.string());
+  check_finite(report.integrals, file.path.string());
   compare_expectations(file, report);
   report.status = overall_status(report);
   report.timings.integrate = seconds_since(start);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/shapes/curves.h"
 #include "geometry/shapes/regions.h"
 #include "geometry/shapes/solids.h"
 #include "quadrature/element_piece.h"
@@ -23,6 +24,20 @@ using geometry::Point3;
 using std::numbers::pi;
 using L2 = SumLayout<2>;
 using L3 = SumLayout<3>;
+
+TEST(BoundarySums, EstimateKnowsThatCoordinatesAreRounded) {
+  for (const double distance : {1e3, 1e6, 1e9}) {
+    const Point3 centre(distance, 2.0 * distance, 0.0);
+    const ElementTable<3> table = bezier_elements(geometry::sphere(1.0, centre));
+    const BoundarySums<3> sums = boundary_sums(table, centre, SumScope::all, {});
+    EXPECT_NEAR(sums.value[L3::measure], 4.0 * pi, sums.error[L3::measure]) << distance;
+    EXPECT_NEAR(sums.value[L3::content], 4.0 * pi, sums.error[L3::content]) << distance;
+    const Point2 middle(distance, 2.0 * distance);
+    const geometry::Boundary<2> circle{{{"circle", geometry::circle_curve(1.0, middle)}}};
+    const BoundarySums<2> plane = boundary_sums(bezier_elements(circle), middle, SumScope::all, {});
+    EXPECT_NEAR(plane.value[L2::measure], 2.0 * pi, plane.error[L2::measure]) << distance;
+  }
+}
 
 struct KnownSolid {
   std::string name;

@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -211,6 +212,24 @@ const std::vector<BadCase> shapes{
     {"ShiftInTheWrongSpace",
      circle + "transform = { translate = [1, 2, 3] }\n",
      {"geometry.transform.translate: found 3 coordinates; expected 2"}},
+    {"WeightsFarApart",
+     nurbs("[0, 0, 1, 2, 2]", "points = [[0, 0], [1, 0], [1, 1]], weights = [1, 1e15, 1]"),
+     {"geometry.curves[1]", "the weights range from 1 to 1e+15; expected a ratio of at most 1e+10"}},
+    {"LargerThanNumbersReach",
+     "[geometry]\ntype = 'sphere'\nradius = 1e100\n",
+     {"case.toml:1: geometry: the boundary has the size 3.46e+100; expected a size from 1e-60 to 1e+60"}},
+    {"SmallerThanNumbersReach",
+     "[geometry]\ntype = 'sphere'\nradius = 1e-100\n",
+     {"geometry: the boundary has the size 3.46e-100; expected"}},
+    {"TooFarFromTheOrigin",
+     polygon("[[0.1, 0], [1, 0.3], [0.2, 0.7]]") + "transform = { translate = [1e12, 1e12] }\n",
+     {"geometry: points nearer than 1.1e-06 are to count as the same, but coordinates up to 1e+12 are rounded"}},
+    {"ClosureToleranceBelowRounding",
+     polygon("[[0.1, 0], [1, 0.3], [0.2, 0.7]]") + "[properties]\nclosure_tolerance = 1e-300\n",
+     {"expected a larger closure tolerance"}},
+    {"SideWithinTheClosureTolerance",
+     "[geometry]\ntype = 'rectangle'\nsize = [1000, 0.001]\n",
+     {"patch 'right': the whole curve lies at (1000, 0), within the closure tolerance 0.001"}},
     {"ScaledToNothing", circle + "transform = { scale = 0 }\n", {"geometry.transform.scale"}},
 };
 
@@ -221,6 +240,9 @@ const std::vector<BadCase> quantities{
     {"IntegrandThatEnds",
      circle + "[[integral]]\nname = 'a'\nintegrand = 'x +'\n",
      {"integral[1].integrand: at the end"}},
+    {"IntegrandWithANul",
+     circle + "[[integral]]\nname = 'a'\nintegrand = \"x\\u0000y\"\n",
+     {"integral[1].integrand: at character 2: found the control character 0x00"}},
     {"UnknownVariable",
      circle + "[[integral]]\nname = 'a'\nintegrand = '2*radius'\n",
      {"at character 3: found the unknown name \"radius\"; expected x, y, pi, e or a function"}},
@@ -265,6 +287,9 @@ const std::vector<BadCase> quantities{
     {"ConvergenceOfWhatIsNotExpected",
      circle + "[expect]\narea = { value = 1, rtol = 1 }\n[convergence]\npoints = [1]\nquantities = ['perimeter']\n",
      {"the quantity \"perimeter\" has no expected value"}},
+    {"ConvergenceByAnEndlessStride",
+     circle + "[expect]\narea = { value = 1, rtol = 1 }\n[convergence]\npoints = { to = 3, step = 2147483647 }\n",
+     {"convergence.points.step: found 2147483647; expected a number from 1 to 128"}},
     {"ConvergenceBackwards",
      circle + "[expect]\narea = { value = 1, rtol = 1 }\n[convergence]\npoints = { from = 3, to = 1 }\n",
      {"convergence.points: found from = 3 above to = 1"}},
@@ -309,6 +334,38 @@ TEST_F(SeveralFaults, OfGeometryAndSectionsComeTogether) {
   for (const char* fragment : {"geometry.loops[1]", "geometry.loops[2]", "integral[1].integrand"}) {
     EXPECT_THAT(result.err, HasSubstr(fragment));
   }
+}
+
+/// The complaints of a case, one a line.
+std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> result;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) result.push_back(line);
+  return result;
+}
+
+TEST_F(SeveralFaults, WhatIsWrongIsSaidOnce) {
+  for (const std::string& text :
+       {"integral = [1]\n" + circle, circle + "[[integral]]\nname = 'a'\n",
+        circle + "[[integral]]\nname = 'a'\nintegrand = ''\n",
+        std::string("[geometry]\ntype = 'ruled'\ncurves = [{ type = 'circle', radius = 1 }]\n"),
+        std::string("[geometry]\ntype = 'loft'\nsections = []\n"),
+        std::string("[geometry]\ntype = 'extrude'\nvector = [0, 0, 0]\nregion = { type = 'circle', radius = 1 }\n"),
+        region("{ curves = [] }")}) {
+    const ProgramResult result = run_case(text);
+    EXPECT_EQ(result.status, 2) << text;
+    EXPECT_EQ(lines(result.err).size(), 1U) << text << result.err;
+    EXPECT_THAT(result.err, HasSubstr("case.toml:")) << text;
+  }
+}
+
+TEST_F(SeveralFaults, LongIntegrandsAreShortened) {
+  std::string integrand = "x";
+  for (int i = 0; i < 20000; ++i) integrand += "+x";
+  const ProgramResult result = run_case(circle + "[[integral]]\nname = 'a'\nintegrand = '" + integrand + "'\n");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_LT(result.err.size(), 300U);
+  EXPECT_THAT(result.err, HasSubstr("x+...\""));
 }
 
 class BadFile : public ProgramTest {};

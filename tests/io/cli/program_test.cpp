@@ -44,8 +44,24 @@ TEST_F(Program, MissedExpectationIsStatus1AndStillWritten) {
   const ProgramResult result = run_case(circle, {"--set", "expect.area.value=12.5"});
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.out, HasSubstr("MISSED"));
+  EXPECT_THAT(result.err, HasSubstr("case.toml: the expectation of area is missed: off by 0.066; expected at most"));
   EXPECT_EQ(results()["status"], "expectation_missed");
   EXPECT_EQ(results()["expectations"][0]["met"], false);
+}
+
+TEST_F(Program, MissedToleranceIsStatus3AndSaidWithoutATable) {
+  const ProgramResult result =
+      run_case(circle + "[[integral]]\nname = 'jump'\nintegrand = '(x > 1.3) ? 1 : 0'\n", {"--quiet"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.err, HasSubstr("case.toml: the tolerance is not reached: jump"));
+  EXPECT_EQ(results()["status"], "tolerance_not_reached");
+}
+
+TEST_F(Program, OverflowIsANumericalFailure) {
+  const ProgramResult result = run_case(circle + "[properties]\ndensity = 1e308\n");
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.err, HasSubstr("case.toml: mass is inf; expected a finite number"));
+  EXPECT_FALSE(fs::exists(folder() / "out"));
 }
 
 TEST_F(Program, WritesTheFilesThatTheCaseAsksFor) {
