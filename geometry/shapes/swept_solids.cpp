@@ -98,6 +98,28 @@ Frame meridian_frame(std::span<const NurbsCurve<3>> curves, const Axis& axis) {
   return {axis.point, farthest.normalized(), k};
 }
 
+bool lies_in_plane(std::span<const NurbsCurve<3>> curves, const Frame& frame, double tolerance) {
+  const Vector3 normal = frame.normal();
+  return std::ranges::all_of(curves, [&](const NurbsCurve<3>& curve) {
+    const Points<3> points = curve.control_points();
+    return (normal.transpose() * (points.colwise() - frame.origin)).cwiseAbs().maxCoeff() <= tolerance;
+  });
+}
+
+/// The point of the curve (of a few on every Bézier element) that lies farthest beyond the second axis.
+Point2 farthest_beyond(const NurbsCurve<2>& curve) {
+  const int samples = 4 * curve.degree();
+  const std::vector<double> ends = curve.knots().breakpoints();
+  Point2 farthest = evaluate(curve, ends.front());
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    for (int k = 1; k <= samples; ++k) {
+      const Point2 point = evaluate(curve, std::lerp(ends[i], ends[i + 1], static_cast<double>(k) / samples));
+      if (point.x() < farthest.x()) farthest = point;
+    }
+  }
+  return farthest;
+}
+
 void check_profile(std::span<const NurbsCurve<3>> curves, const Frame& frame) {
   const double tolerance = plane_tolerance * extent(curves, frame.origin);
   const Vector3 normal = frame.normal();
@@ -234,6 +256,24 @@ Boundary<3> revolve_solid(std::span<const NurbsCurve<3>> curves, const Axis& axi
     profile.patches.push_back({curves.size() == 1 ? "side" : fmt::format("side_{}", i + 1), project(curves[i], frame)});
   }
   return revolve_profile(profile, frame, angle);
+}
+
+void require_simple_profile(std::span<const NurbsCurve<3>> curves, const Axis& axis) {
+  const Frame frame = meridian_frame(curves, axis);
+  const double size = extent(curves, frame.origin);
+  if (!lies_in_plane(curves, frame, plane_tolerance * size)) return;
+  Boundary<2> profile;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    profile.patches.push_back({fmt::format("curve {}", i + 1), project(curves[i], frame)});
+    const Point2 beyond = farthest_beyond(profile.patches.back().shape);
+    if (beyond.x() >= -1e-6 * size) continue;
+    throw GeometryError(
+        fmt::format("revolve: curve {} of the profile reaches {:.3g} beyond the axis: a profile that "
+                    "makes a full turn must lie on one side of the axis",
+                    i + 1, -beyond.x()));
+  }
+  close_along_axis(profile);
+  orient(profile);
 }
 
 Boundary<3> revolve(const Boundary<2>& region, const Axis& axis, double angle) {

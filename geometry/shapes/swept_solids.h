@@ -31,6 +31,11 @@ Boundary<3> revolve_solid(std::span<const NurbsCurve<3>> curves, const Axis& axi
 /// The same for a region in the plane z = 0; the axis must lie in that plane. Walls keep the names of the curves.
 Boundary<3> revolve(const Boundary<2>& region, const Axis& axis, double angle = 2.0 * std::numbers::pi);
 
+/// Throws GeometryError if a full turn of the profile about the axis sweeps a surface that crosses itself: the profile
+/// lies on both sides of the axis, or encloses (with the axis, if it ends there) a region whose loops cross. A profile
+/// that does not lie in one plane with the axis is passed over.
+void require_simple_profile(std::span<const NurbsCurve<3>> curves, const Axis& axis);
+
 /// The loft() through closed sections, wall "side", with plane caps on the first and the last; a section that is a
 /// single point needs none. A first or last section that is not plane is refused.
 Boundary<3> loft_solid(std::span<const NurbsCurve<3>> sections, const LoftOptions& options = {});

@@ -241,6 +241,7 @@ Boundary<3> revolve_boundary(const RevolveKeys& keys) {
   const double angle = keys.angle * (pi / 180.0);
   if (keys.region) return geometry::revolve(plane_region(*keys.region).boundary, axis, angle);
   const std::vector<NamedCurve> curves = profile_curves(keys.profile);
+  if (keys.angle == 360.0) geometry::require_simple_profile(shapes_of(curves), axis);
   if (keys.ends == SweepEnds::open) return revolved_curves(curves, axis, angle);
   return geometry::revolve_solid(shapes_of(curves), axis, angle);
 }

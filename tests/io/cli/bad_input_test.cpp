@@ -203,6 +203,14 @@ const std::vector<BadCase> shapes{
     {"RegionAcrossTheAxis",
      "[geometry]\ntype = 'revolve'\naxis = { direction = [0, 1, 0] }\nregion = { type = 'circle', radius = 1 }\n",
      {"geometry"}},
+    {"ProfileAcrossTheAxis",
+     "[geometry]\ntype = 'revolve'\naxis = { direction = [0, 1, 0] }\nprofile = [{ type = 'circle', radius = 1, "
+     "centre = [0.5, 0] }]\n",
+     {"case.toml:1: geometry: revolve: curve 1 of the profile reaches 0.5 beyond the axis"}},
+    {"ProfileThatCrossesItself",
+     "[geometry]\ntype = 'revolve'\naxis = { direction = [0, 1, 0] }\nprofile = [{ type = 'polyline', points = "
+     "[[0, 0], [2, 2], [2, 0], [0, 3]] }]\n",
+     {"case.toml:1: geometry: a loop crosses itself"}},
     {"ExtrusionInThePlane",
      "[geometry]\ntype = 'extrude'\nvector = [1, 0, 0]\nregion = { type = 'circle', radius = 1 }\n",
      {"geometry"}},
