@@ -61,8 +61,9 @@ struct OrientedBoundary {
 /// depth, odd levels are voids. An open shell keeps consistent orientations.
 ///
 /// Throws GeometryError, naming patches and place, for: an edge shared by more than two patches; a shell that cannot
-/// be oriented (a Moebius strip); a closed shell without content; for Dim = 2 also loops that cross themselves or one
-/// another (touching is allowed).
+/// be oriented (a Moebius strip); a closed shell without content; a boundary whose coordinates coincidence_tolerance()
+/// refuses; for Dim = 2 also loops that cross themselves or one another (touching is allowed); for Dim = 3 shells that
+/// cross one another so far that a few points of one, spread over it, see it (that is no proof that they do not).
 template <int Dim>
 OrientedBoundary<Dim> orient(const Boundary<Dim>& boundary, const OrientationOptions& options = {});
 

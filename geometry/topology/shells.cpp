@@ -143,19 +143,40 @@ std::vector<ClosedShell> closed_shells(const ElementTable<3>& table, const std::
   return closed;
 }
 
-/// Shells do not cross, so any point of `inner` away from `outer` decides.
+bool box_holds(const ClosedShell& outer, const ClosedShell& inner, double tolerance) {
+  return (inner.lower.array() >= outer.lower.array() - tolerance).all() &&
+         (inner.upper.array() <= outer.upper.array() + tolerance).all();
+}
+
+bool boxes_overlap(const ClosedShell& a, const ClosedShell& b, double tolerance) {
+  return (a.lower.array() < b.upper.array() - tolerance).all() && (a.upper.array() > b.lower.array() + tolerance).all();
+}
+
+/// Whether `inner` lies inside `outer`: a few of its points, away from `outer`, decide. Shells may not cross, so they
+/// have to agree.
 bool is_inside(const ClosedShell& inner, const ClosedShell& outer, double tolerance) {
-  const bool box_inside = (inner.lower.array() >= outer.lower.array() - tolerance).all() &&
-                          (inner.upper.array() <= outer.upper.array() + tolerance).all();
-  if (!box_inside) return false;
+  if (!boxes_overlap(inner, outer, tolerance)) return false;
+  const bool box_inside = box_holds(outer, inner, tolerance);
+  // Whether the two cross shows when they are asked about the other way round.
+  if (!box_inside && box_holds(inner, outer, tolerance)) return false;
+  const std::size_t wanted = box_inside ? 4 : 8;
   constexpr std::size_t most = 64;
-  const std::size_t step = std::max<std::size_t>(1, inner.pieces.size() / most);
-  for (std::size_t i = 0; i < inner.pieces.size(); i += step) {
+  const std::size_t count = inner.pieces.size();
+  const std::size_t stride = count <= wanted ? 1 : count / wanted + 1;
+  std::size_t inside = 0;
+  std::size_t decided = 0;
+  for (std::size_t i = 0; i < std::min(most, count) && decided < wanted; ++i) {
     // Off the middle, so that shells that touch at regular places are not probed there.
-    const Point3 point = evaluate(inner.pieces[i], 0.4142, 0.5858);
-    if (const std::optional<int> turns = winding_number(outer.pieces, point, tolerance)) return *turns != 0;
+    const Point3 point = evaluate(inner.pieces[(i * stride) % count], 0.4142, 0.5858);
+    const std::optional<int> turns = winding_number(outer.pieces, point, tolerance);
+    if (!turns) continue;
+    ++decided;
+    if (*turns != 0) ++inside;
+    if (inside > 0 && inside < decided) throw GeometryError(fmt::format("two shells cross near {}", at(point)));
   }
-  throw GeometryError(fmt::format("two shells coincide near {}", at(inner.pieces.front().corner(0, 0))));
+  if (decided == 0)
+    throw GeometryError(fmt::format("two shells coincide near {}", at(inner.pieces.front().corner(0, 0))));
+  return inside > 0;
 }
 
 /// Turns the signs of every closed shell so that its normals point out of the material; odd depth is a void.

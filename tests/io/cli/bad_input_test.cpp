@@ -203,6 +203,10 @@ const std::vector<BadCase> shapes{
     {"RegionAcrossTheAxis",
      "[geometry]\ntype = 'revolve'\naxis = { direction = [0, 1, 0] }\nregion = { type = 'circle', radius = 1 }\n",
      {"geometry"}},
+    {"ShellsThatCross",
+     "[geometry]\ntype = 'patches'\npatches = [{ type = 'sphere', radius = 1 }, { type = 'sphere', radius = 1, centre "
+     "= [1, 0, 0] }]\n",
+     {"case.toml:1: geometry: two shells cross near ("}},
     {"ProfileAcrossTheAxis",
      "[geometry]\ntype = 'revolve'\naxis = { direction = [0, 1, 0] }\nprofile = [{ type = 'circle', radius = 1, "
      "centre = [0.5, 0] }]\n",
