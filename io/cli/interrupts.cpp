@@ -4,8 +4,6 @@
 #include <csignal>
 #include <cstddef>
 
-#include <signal.h>
-
 namespace isorim::cli {
 namespace {
 
