@@ -8,12 +8,15 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "geometry/errors.h"
 #include "quadrature/element_sums.h"
+#include "quadrature/gauss_legendre.h"
 #include "quadrature/options.h"
 
 /// The one adaptive scheme behind every integral: the order is raised in the directions that need it, then the piece
@@ -93,9 +96,13 @@ class AdaptiveIntegrator {
 
   /// Evaluator and options outlive the integrator. options.fixed_points > 0: that rule alone, the estimate from a rule
   /// with two more points.
-  /// Makes at most `bisections` of them.
+  /// Makes at most `bisections` of them. Throws InputError if options.fixed_points is out of its range.
   AdaptiveIntegrator(const Evaluator& evaluator, const Options& options, std::int64_t bisections)
-      : evaluator_(evaluator), options_(options), bisections_left_(bisections) {}
+      : evaluator_(evaluator), options_(options), bisections_left_(bisections) {
+    if (options.fixed_points >= 0 && options.fixed_points <= max_fixed_points) return;
+    throw InputError("found fixed_points = " + std::to_string(options.fixed_points) + "; expected 0 to " +
+                     std::to_string(max_fixed_points));
+  }
 
   /// One rule of `points` points in each direction over all pieces; no estimate of the error.
   AdaptiveTotals<Values> apply_rule(std::vector<Piece> pieces, int points) {

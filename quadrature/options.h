@@ -13,7 +13,7 @@ struct Options {
   /// rounding for the error estimate to be meaningful.
   double tolerance = 1e-12;
   /// n > 0: the n-point Gauss-Legendre rule in every direction of every element (knot span) and no adaptivity, as
-  /// in the thesis of Correia (2016, chapter 6). 0: adaptive.
+  /// in the thesis of Correia (2016, chapter 6); at most max_fixed_points. 0: adaptive.
   int fixed_points = 0;
   /// Number of threads; 0: all that OpenMP offers. The result has the same bits for any number.
   int threads = 0;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/case/case_file.h"
+#include "quadrature/gauss_legendre.h"
 
 /// The declarations of the sections of a case file.
 namespace isorim::io {
@@ -40,7 +41,7 @@ const Schema<PropertiesKeys>& schema<PropertiesKeys>() {
           .key("gauss_points", &PropertiesKeys::gauss_points,
                {.text = "n > 0: the fixed n-point Gauss rule per knot span and direction instead of adaptive "
                         "integration.",
-                .range = Range::between(0, 128)})
+                .range = Range::between(0, quadrature::max_fixed_points)})
           .choice("open_boundary", &PropertiesKeys::open_boundary,
                   {{"refuse", OpenBoundary::refuse}, {"integrate", OpenBoundary::integrate}},
                   {.text = "A boundary with free edges encloses nothing: its domain is refused, or integrated as if "
@@ -148,9 +149,10 @@ template <>
 const Schema<CountRange>& schema<CountRange>() {
   static const auto declared =
       Schema<CountRange>("range", "Counts from one number to another.")
-          .key("from", &CountRange::from, {.text = "First.", .range = Range::between(1, 128)})
-          .key("to", &CountRange::to, {.text = "Last.", .range = Range::between(1, 128), .presence = required})
-          .key("step", &CountRange::step, {.text = "Stride.", .range = Range::between(1, 128)})
+          .key("from", &CountRange::from, {.text = "First.", .range = Range::between(1, quadrature::max_fixed_points)})
+          .key("to", &CountRange::to,
+               {.text = "Last.", .range = Range::between(1, quadrature::max_fixed_points), .presence = required})
+          .key("step", &CountRange::step, {.text = "Stride.", .range = Range::between(1, quadrature::max_fixed_points)})
           .check([](const CountRange& range, const KeyPlace& where, Complaints& complaints) {
             if (range.from > range.to) {
               complaints.add(where, fmt::format("found from = {} above to = {}", range.from, range.to));
@@ -181,7 +183,7 @@ const Schema<ConvergenceKeys>& schema<ConvergenceKeys>() {
                               "values as convergence.csv and convergence.svg.")
           .key("points", &ConvergenceKeys::points,
                {.text = "Numbers of points per knot span and direction.",
-                .range = Range::between(1, 128),
+                .range = Range::between(1, quadrature::max_fixed_points),
                 .presence = required})
           .key("quantities", &ConvergenceKeys::quantities,
                {.text = "Properties or integrals that have an expected value; all that have one if absent."})

@@ -7,10 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/errors.h"
 #include "geometry/shapes/curves.h"
 #include "geometry/shapes/regions.h"
 #include "geometry/shapes/solids.h"
 #include "quadrature/element_piece.h"
+#include "quadrature/gauss_legendre.h"
 #include "tests/quadrature/hollow.h"
 #include "tests/quadrature/random_elements.h"
 
@@ -36,6 +38,18 @@ TEST(BoundarySums, EstimateKnowsThatCoordinatesAreRounded) {
     const geometry::Boundary<2> circle{{{"circle", geometry::circle_curve(1.0, middle)}}};
     const BoundarySums<2> plane = boundary_sums(bezier_elements(circle), middle, SumScope::all, {});
     EXPECT_NEAR(plane.value[L2::measure], 2.0 * pi, plane.error[L2::measure]) << distance;
+  }
+}
+
+TEST(BoundarySums, TakesTheLargestFixedRuleAndRefusesLargerOnes) {
+  const ElementTable<3> table = bezier_elements(geometry::sphere(1.0, Point3::Zero()));
+  Options options;
+  options.fixed_points = max_fixed_points;
+  const BoundarySums<3> sums = boundary_sums(table, Point3(0.0, 0.0, 0.0), SumScope::all, options);
+  EXPECT_NEAR(sums.value[L3::measure], 4.0 * pi, 1e-12);
+  for (const int points : {-1, max_fixed_points + 1}) {
+    options.fixed_points = points;
+    EXPECT_THROW(boundary_sums(table, Point3(0.0, 0.0, 0.0), SumScope::all, options), isorim::InputError) << points;
   }
 }
 
