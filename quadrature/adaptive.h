@@ -94,9 +94,9 @@ class AdaptiveIntegrator {
   using Values = typename Evaluator::Values;
   static constexpr int directions = Evaluator::directions;
 
-  /// Evaluator and options outlive the integrator. options.fixed_points > 0: that rule alone, the estimate from a rule
-  /// with two more points.
-  /// Makes at most `bisections` of them. Throws InputError if options.fixed_points is out of its range.
+  /// Evaluator and options outlive the integrator, which bisects at most `bisections` times. options.fixed_points > 0:
+  /// that rule alone, the estimate from rules with one and two more points. Throws InputError if options.fixed_points
+  /// is out of its range.
   AdaptiveIntegrator(const Evaluator& evaluator, const Options& options, std::int64_t bisections)
       : evaluator_(evaluator), options_(options), bisections_left_(bisections) {
     if (options.fixed_points >= 0 && options.fixed_points <= max_fixed_points) return;

@@ -48,8 +48,8 @@ struct KnotRemoval {
 /// units of the coefficients). Piegl & Tiller, A5.8. Throws GeometryError if u is no inner knot.
 KnotRemoval remove_knot(const BSpline& spline, double u, int times, double tolerance);
 
-/// The same spline with degree p + times; each breakpoint's multiplicity rises by `times`. Exact, by way of Bézier
-/// segments (Piegl & Tiller, section 5.5). An unclamped spline comes back clamped.
+/// The same spline with degree p + times; each breakpoint's multiplicity rises by `times`. Exact: one degree more is
+/// the mean of p + 1 refinements (Prautzsch & Piper, CAGD 8, 1991). An unclamped spline comes back clamped.
 BSpline elevate_degree(const BSpline& spline, int times);
 
 /// The same spline on a clamped knot vector over the same domain.
