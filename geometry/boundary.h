@@ -2,16 +2,27 @@
 
 #include <string>
 #include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "geometry/nurbs/curve.h"
 #include "geometry/nurbs/surface.h"
+#include "geometry/trimming/trimmed_surface.h"
 
 namespace isorim::geometry {
 
+/// A piece of the boundary of a solid: a whole surface or a part of one.
+using SurfaceShape = std::variant<NurbsSurface<3>, TrimmedSurface>;
+
 /// What a boundary in Dim dimensions is made of: curves in the plane, surfaces in space.
 template <int Dim>
-using PatchShape = std::conditional_t<Dim == 2, NurbsCurve<2>, NurbsSurface<3>>;
+using PatchShape = std::conditional_t<Dim == 2, NurbsCurve<2>, SurfaceShape>;
+
+/// The surface that carries the shape.
+const NurbsSurface<3>& surface_of(const SurfaceShape& shape);
+/// The loops that bound the shape in the surface's parameters; the domain's rectangle for a whole surface.
+std::vector<TrimLoop> trim_loops(const SurfaceShape& shape);
+SurfaceShape transform(const SurfaceShape& shape, const AffineMap<3>& map);
 
 /// One piece of a boundary. Its outward normal is `orientation` times the natural one: (y', -x') for a plane curve
 /// (the domain on its left), S_u x S_v for a surface. The shape itself stays as it was given.

@@ -103,7 +103,9 @@ double common_weight(const NurbsSurface<3>& surface, const Strip& strip, const E
 }
 
 void append_patch(ElementTable<3>& table, const Patch<3>& patch, std::size_t index) {
-  const NurbsSurface<3>& surface = patch.shape;
+  if (std::holds_alternative<TrimmedSurface>(patch.shape))
+    throw GeometryError(fmt::format("patch \"{}\" is trimmed, which elements do not know yet", patch.name));
+  const NurbsSurface<3>& surface = surface_of(patch.shape);
   const Eigen::Index nu = surface.count_u();
   const std::vector<ExtractionOperator> in_u = extraction_operators(surface.knots_u());
   const std::vector<ExtractionOperator> in_v = extraction_operators(surface.knots_v());

@@ -18,7 +18,8 @@ template <int Dim>
 struct BezierElement {
   /// Where the net starts in ElementTable::nets, in doubles.
   std::size_t offset = 0;
-  /// The element's cell in the parameter space of its patch; unit cell coordinate s maps to first + s length.
+  /// The element's cell in the parameter space of its patch, a knot span or (if cut) a part of one; unit cell
+  /// coordinate s maps to first + s length.
   std::array<Interval, Dim - 1> domain;
   /// Index of the patch in the boundary.
   std::int32_t patch = 0;
@@ -27,6 +28,10 @@ struct BezierElement {
   bool polynomial = false;
   /// +1 or -1: the outward normal is this times (y', -x') or S_u x S_v.
   std::int8_t orientation = 1;
+  /// Index into ElementTable::regions if only a part of the unit cell belongs to the boundary; -1: all of it does.
+  std::int32_t region = -1;
+
+  bool is_cut() const { return region >= 0; }
 
   /// Number of control points: the product of the degrees plus one.
   int control_point_count() const {
@@ -36,6 +41,14 @@ struct BezierElement {
   }
 };
 
+/// The part of a cut element that is kept, by its own boundary in the element's unit cell.
+struct TrimmedRegion {
+  /// Rational Bézier curves, 3 x (p + 1) homogeneous points (w s, w t, w) with positive weights: closed chains with the
+  /// kept part on their left, the cell's own edges among them where they bound it. They do not cross; they may touch.
+  /// The sum over all curves of a line integral is therefore one around the region, whatever their order.
+  std::vector<HomogeneousPoints<2>> curves;
+};
+
 /// Every element of a boundary, patch by patch, with their control nets in one array.
 template <int Dim>
 struct ElementTable {
@@ -43,6 +56,8 @@ struct ElementTable {
   /// The nets one after the other; each (Dim + 1) x (p + 1)[(q + 1)] homogeneous points, column-major, the first
   /// parameter fastest: (w x, w y, [w z,] w), (w x, ...
   std::vector<double> nets;
+  /// Of the cut elements (Dim = 3).
+  std::vector<TrimmedRegion> regions;
 
   std::span<const double> net(const BezierElement<Dim>& element) const {
     return {nets.data() + element.offset, static_cast<std::size_t>(element.control_point_count() * (Dim + 1))};
@@ -55,6 +70,9 @@ struct ElementTable {
 
 /// The rational Bézier elements of each patch, in the order of the patches, a surface's elements with u fastest.
 /// Exact: knots are inserted to full multiplicity.
+///
+/// Of a trimmed surface only the elements are there that hold some of what is kept. Its cut elements are narrowed to
+/// the bounding rectangle of their region (`domain` tells which), so that their nets bound what is kept.
 template <int Dim>
 ElementTable<Dim> bezier_elements(const Boundary<Dim>& boundary);
 

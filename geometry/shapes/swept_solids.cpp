@@ -297,7 +297,7 @@ Boundary<3> loft_solid(std::span<const NurbsCurve<3>> sections, const LoftOption
   OrientedBoundary<3> oriented = orient(solid);
   require_closed(oriented);
   for (Patch<3>& patch : oriented.boundary.patches) {
-    if (patch.orientation < 0) patch.shape = reverse(patch.shape, Direction::u);
+    if (patch.orientation < 0) patch.shape = reverse(surface_of(patch.shape), Direction::u);
     patch.orientation = 1;
   }
   return oriented.boundary;

@@ -86,7 +86,7 @@ std::vector<SurfaceEdge> find_edges(const Boundary<3>& boundary, double toleranc
   constexpr std::array<int, 4> direction{1, 1, -1, -1};
   std::vector<SurfaceEdge> edges;
   for (std::size_t i = 0; i < boundary.patches.size(); ++i) {
-    std::array<NurbsCurve<3>, 4> curves = boundary_curves(boundary.patches[i].shape);
+    std::array<NurbsCurve<3>, 4> curves = boundary_curves(surface_of(boundary.patches[i].shape));
     for (std::size_t side = 0; side < 4; ++side) {
       const Points<3> points = curves[side].control_points();
       const Point3 lower = points.rowwise().minCoeff();

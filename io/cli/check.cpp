@@ -26,7 +26,15 @@ std::string degree_text(const geometry::Patch<2>& patch) {
   return fmt::format("{}", patch.shape.degree());
 }
 std::string degree_text(const geometry::Patch<3>& patch) {
-  return fmt::format("{} x {}", patch.shape.knots_u().degree(), patch.shape.knots_v().degree());
+  const geometry::NurbsSurface<3>& surface = geometry::surface_of(patch.shape);
+  return fmt::format("{} x {}", surface.knots_u().degree(), surface.knots_v().degree());
+}
+
+bool is_polynomial(const geometry::Patch<2>& patch) {
+  return patch.shape.is_polynomial();
+}
+bool is_polynomial(const geometry::Patch<3>& patch) {
+  return geometry::surface_of(patch.shape).is_polynomial();
 }
 
 template <int Dim>
@@ -37,7 +45,7 @@ std::string patches_text(const io::Model<Dim>& model) {
   for (const auto& element : model.table.elements) ++counts[std::size_t(element.patch)];
   for (std::size_t i = 0; i < patches.size(); ++i) {
     table.add_row({patches[i].name, degree_text(patches[i]), fmt::format("{}", counts[i]),
-                   patches[i].shape.is_polynomial() ? "polynomial" : "rational",
+                   is_polynomial(patches[i]) ? "polynomial" : "rational",
                    patches[i].orientation > 0 ? "as given" : "reversed"});
   }
   return table.text(2);

@@ -107,7 +107,7 @@ const geometry::ElementTable<3>& million_elements() {
       for (int i = 1; i < 1000; ++i) {
         if (i % 250 != 0) knots.push_back(i / 1000.0);
       }
-      torus.patches[0].shape = refine_knots(torus.patches[0].shape, direction, knots);
+      torus.patches[0].shape = refine_knots(surface_of(torus.patches[0].shape), direction, knots);
     }
     return geometry::bezier_elements(torus);
   }();

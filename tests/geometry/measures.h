@@ -70,8 +70,9 @@ inline Measures measures(const Boundary<3>& boundary, int n = 24) {
   const GaussRule rule = gauss_rule(n);
   Measures sum;
   for (const Patch<3>& patch : boundary.patches) {
-    const std::vector<double> us = patch.shape.knots_u().breakpoints();
-    const std::vector<double> vs = patch.shape.knots_v().breakpoints();
+    const NurbsSurface<3>& surface = std::get<NurbsSurface<3>>(patch.shape);
+    const std::vector<double> us = surface.knots_u().breakpoints();
+    const std::vector<double> vs = surface.knots_v().breakpoints();
     for (std::size_t i = 0; i + 1 < us.size(); ++i) {
       for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
         const double du = us[i + 1] - us[i];
@@ -79,7 +80,7 @@ inline Measures measures(const Boundary<3>& boundary, int n = 24) {
         for (int k = 0; k < n; ++k) {
           for (int l = 0; l < n; ++l) {
             const SurfaceJet<3> jet =
-                evaluate_jet(patch.shape, Point2(us[i] + du * rule.nodes[k], vs[j] + dv * rule.nodes[l]));
+                evaluate_jet(surface, Point2(us[i] + du * rule.nodes[k], vs[j] + dv * rule.nodes[l]));
             const Vector3 normal = jet.du.cross(jet.dv);
             const double weight = du * dv * rule.weights[k] * rule.weights[l];
             sum.boundary += weight * normal.norm();

@@ -30,7 +30,7 @@ using Implicit = std::function<double(const Point3&)>;
 void expect_on_surface(const Patch<3>& patch, const Implicit& f, double tolerance) {
   for (int i = 0; i <= 40; ++i) {
     for (int j = 0; j <= 40; ++j) {
-      const SurfaceJet<3> jet = evaluate_jet(patch.shape, Point2(i / 40.0, j / 40.0));
+      const SurfaceJet<3> jet = evaluate_jet(surface_of(patch.shape), Point2(i / 40.0, j / 40.0));
       ASSERT_NEAR(f(jet.point), 0.0, tolerance) << patch.name << " " << i << " " << j;
       const Vector3 normal = patch.orientation * jet.du.cross(jet.dv);
       if (normal.norm() < 1e-9) continue;  // at a pole
@@ -110,7 +110,7 @@ TEST(Solids, BoxAndCube) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const int side : {0, 1}) {
       const Patch<3>& patch = solid.patches[static_cast<std::size_t>(2 * axis + side)];
-      const SurfaceJet<3> jet = evaluate_jet(patch.shape, Point2(0.5, 0.5));
+      const SurfaceJet<3> jet = evaluate_jet(surface_of(patch.shape), Point2(0.5, 0.5));
       Vector3 outward = Vector3::Zero();
       outward(axis) = side == 0 ? -1.0 : 1.0;
       EXPECT_EQ(jet.du.cross(jet.dv).normalized(), outward) << patch.name;

@@ -155,7 +155,7 @@ TEST(Revolve, GivesTheSphereOfTheThesisAboutAnAxisParallelToX) {
     expect_solid(solid, 4.0 * pi, 4.0 / 3.0 * pi);
     for (int i = 0; i <= 20; ++i) {
       for (int j = 0; j <= 20; ++j) {
-        const Point3 x = evaluate(solid.patches[0].shape, Point2(i / 20.0, j / 20.0));
+        const Point3 x = evaluate(surface_of(solid.patches[0].shape), Point2(i / 20.0, j / 20.0));
         ASSERT_NEAR((x - Point3(0.5, 0.5, 0.5)).norm(), 1.0, 3e-15);
       }
     }

@@ -34,8 +34,9 @@ constexpr double pi = std::numbers::pi;
 Boundary<3> scrambled(Boundary<3> boundary, std::mt19937& random) {
   std::ranges::shuffle(boundary.patches, random);
   for (Patch<3>& patch : boundary.patches) {
-    if (random() % 2 == 0) patch.shape = reverse(patch.shape, random() % 2 == 0 ? Direction::u : Direction::v);
-    if (random() % 2 == 0) patch.shape = swap_directions(patch.shape);
+    if (random() % 2 == 0)
+      patch.shape = reverse(surface_of(patch.shape), random() % 2 == 0 ? Direction::u : Direction::v);
+    if (random() % 2 == 0) patch.shape = swap_directions(surface_of(patch.shape));
     if (random() % 2 == 0) patch.orientation = -1;
   }
   return boundary;
@@ -47,12 +48,12 @@ Boundary<3> cut(const Boundary<3>& boundary, Direction direction, const std::vec
   for (const double f : fractions) {
     Boundary<3> next;
     for (const Patch<3>& patch : result.patches) {
-      const Interval domain = patch.shape.knots(direction).domain();
+      const Interval domain = surface_of(patch.shape).knots(direction).domain();
       if (f <= domain.first || f >= domain.last) {
         next.patches.push_back(patch);
         continue;
       }
-      const auto [a, b] = split(patch.shape, direction, f);
+      const auto [a, b] = split(surface_of(patch.shape), direction, f);
       next.patches.push_back({patch.name + "a", a, patch.orientation});
       next.patches.push_back({patch.name + "b", b, patch.orientation});
     }
@@ -173,7 +174,7 @@ TEST(OrientShells, OpenShellsReportTheirFreeEdges) {
 TEST(OrientShells, AHoleInAFaceIsFree) {
   // A face in two parts, one of which is missing: the edges around it are free, the others joined.
   Boundary<3> open = box(Vector3(1, 1, 1));
-  const auto [kept, lost] = split(open.patches[5].shape, Direction::u, 0.25);
+  const auto [kept, lost] = split(surface_of(open.patches[5].shape), Direction::u, 0.25);
   open.patches[5].shape = kept;
   const OrientedBoundary<3> oriented = orient(open);
   EXPECT_EQ(oriented.topology.free_edges.size(), 4U);
@@ -244,7 +245,7 @@ TEST(OrientShells, RefusesShellsWithoutVolume) {
 TEST(OrientShells, TenThousandPatchesTakeLessThanTwoSeconds) {
   Boundary<3> ring;
   // 100 x 100 bilinear patches through points of a torus.
-  const NurbsSurface<3> surface = torus(2.0, 0.7).patches[0].shape;
+  const NurbsSurface<3> surface = surface_of(torus(2.0, 0.7).patches[0].shape);
   const auto node = [&](int i, int j) { return evaluate(surface, Point2((i % 100) / 100.0, (j % 100) / 100.0)); };
   for (int i = 0; i < 100; ++i) {
     for (int j = 0; j < 100; ++j) {

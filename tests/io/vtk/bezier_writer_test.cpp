@@ -56,7 +56,7 @@ constexpr double minor_radius = 1.25;
 /// The boundary with every patch's parametrisation turned round in v, the orientations as given: outward normals if -1.
 Boundary<3> reversed(Boundary<3> boundary, int orientation) {
   for (auto& patch : boundary.patches) {
-    patch.shape = reverse(patch.shape, geometry::Direction::v);
+    patch.shape = reverse(geometry::surface_of(patch.shape), geometry::Direction::v);
     patch.orientation = orientation;
   }
   return boundary;
@@ -206,7 +206,7 @@ double patch_parameter(const geometry::Interval& domain, double s) {
 
 Point3 exact_point(const Boundary<3>& boundary, const geometry::BezierElement<3>& element, double r, double s) {
   const double first = element.orientation < 0 ? 1.0 - r : r;
-  return evaluate(boundary.patches[static_cast<std::size_t>(element.patch)].shape,
+  return evaluate(geometry::surface_of(boundary.patches[static_cast<std::size_t>(element.patch)].shape),
                   {patch_parameter(element.domain[0], first), patch_parameter(element.domain[1], s)});
 }
 

@@ -1,0 +1,136 @@
+#include "geometry/trimming/trimmed_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geometry/errors.h"
+#include "geometry/intersection/plane_pieces.h"
+#include "geometry/spline/bspline.h"
+
+namespace isorim::geometry {
+namespace {
+
+std::string at(const Point2& uv) {
+  return fmt::format("({:.9g}, {:.9g})", uv.x(), uv.y());
+}
+
+Point2 start_of(const NurbsCurve<2>& curve) {
+  return evaluate(curve, curve.domain().first);
+}
+
+Point2 end_of(const NurbsCurve<2>& curve) {
+  return evaluate(curve, curve.domain().last);
+}
+
+/// The rectangle of the parameters, widened by the tolerance.
+struct AllowedParameters {
+  Interval u;
+  Interval v;
+  Vector2 margin;
+
+  explicit AllowedParameters(const NurbsSurface<3>& surface)
+      : u(surface.knots_u().domain()),
+        v(surface.knots_v().domain()),
+        margin(TrimmedSurface::parameter_tolerance * Vector2(u.length(), v.length())) {}
+
+  bool contains(const Point2& uv) const {
+    return uv.x() >= u.first - margin.x() && uv.x() <= u.last + margin.x() && uv.y() >= v.first - margin.y() &&
+           uv.y() <= v.last + margin.y();
+  }
+};
+
+void require_inside(const NurbsCurve<2>& curve, const AllowedParameters& allowed, const std::string& which) {
+  for (const BezierSegment& segment : bezier_segments({curve.knots(), curve.homogeneous()})) {
+    for (Eigen::Index i = 0; i < segment.coefficients.cols(); ++i) {
+      const Point2 uv = segment.coefficients.col(i).head<2>() / segment.coefficients(2, i);
+      if (allowed.contains(uv)) continue;
+      throw GeometryError(
+          fmt::format("{} leaves the surface's domain: control point {}; expected u in [{:.9g}, {:.9g}] "
+                      "and v in [{:.9g}, {:.9g}]",
+                      which, at(uv), allowed.u.first, allowed.u.last, allowed.v.first, allowed.v.last));
+    }
+  }
+}
+
+void require_closed(const TrimLoop& loop, const AllowedParameters& allowed, std::size_t number) {
+  for (std::size_t k = 0; k < loop.curves.size(); ++k) {
+    const std::size_t next = (k + 1) % loop.curves.size();
+    const Point2 end = end_of(loop.curves[k]);
+    const Point2 start = start_of(loop.curves[next]);
+    if (((end - start).cwiseAbs().array() <= allowed.margin.array()).all()) continue;
+    throw GeometryError(
+        fmt::format("loop {} is open: curve {} ends at {}, curve {} starts at {} in the surface's "
+                    "parameters",
+                    number, k + 1, at(end), next + 1, at(start)));
+  }
+}
+
+/// Curves and the straight lines between them.
+void append_pieces(const TrimLoop& loop, std::vector<PlanePiece>& pieces) {
+  const auto append_line = [&](const Point2& from, const Point2& to) {
+    if (from == to) return;
+    HomogeneousPoints<2> net(3, 2);
+    net << from, to, 1.0, 1.0;
+    pieces.emplace_back(std::move(net));
+  };
+  for (std::size_t k = 0; k < loop.curves.size(); ++k) {
+    for (BezierSegment& segment : bezier_segments({loop.curves[k].knots(), loop.curves[k].homogeneous()})) {
+      if (!pieces.empty() && k > 0) append_line(pieces.back().end(), PlanePiece(segment.coefficients).start());
+      pieces.emplace_back(std::move(segment.coefficients));
+    }
+  }
+  append_line(pieces.back().end(), start_of(loop.curves.front()));
+}
+
+void require_area(const std::vector<TrimLoop>& loops, const AllowedParameters& allowed) {
+  std::vector<PlanePiece> pieces;
+  for (const TrimLoop& loop : loops) {
+    std::vector<PlanePiece> own;
+    append_pieces(loop, own);
+    pieces.insert(pieces.end(), own.begin(), own.end());
+  }
+  const AreaEstimate area = doubled_signed_area(pieces, 1e-15 * allowed.u.length() * allowed.v.length());
+  if (area.value > 0.0) return;
+  throw GeometryError(
+      fmt::format("the loops enclose no area of the surface's parameters: it is {:.3g}; expected outer loops to run "
+                  "counter-clockwise and holes clockwise",
+                  0.5 * area.value));
+}
+
+}  // namespace
+
+TrimmedSurface::TrimmedSurface(NurbsSurface<3> surface, std::vector<TrimLoop> loops)
+    : surface_(std::move(surface)), loops_(std::move(loops)) {
+  if (loops_.empty()) throw GeometryError("a trimmed surface has no loop; expected one at least");
+  const AllowedParameters allowed(surface_);
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    if (loops_[i].curves.empty()) throw GeometryError(fmt::format("loop {} has no curve", i + 1));
+    for (std::size_t k = 0; k < loops_[i].curves.size(); ++k)
+      require_inside(loops_[i].curves[k], allowed, fmt::format("curve {} of loop {}", k + 1, i + 1));
+    require_closed(loops_[i], allowed, i + 1);
+  }
+  require_area(loops_, allowed);
+}
+
+TrimLoop domain_loop(const NurbsSurface<3>& surface) {
+  const Interval u = surface.knots_u().domain();
+  const Interval v = surface.knots_v().domain();
+  const std::array<Point2, 4> corners{Point2(u.first, v.first), Point2(u.last, v.first), Point2(u.last, v.last),
+                                      Point2(u.first, v.last)};
+  TrimLoop loop;
+  for (std::size_t side = 0; side < 4; ++side) {
+    Points<2> ends(2, 2);
+    ends << corners[side], corners[(side + 1) % 4];
+    loop.curves.push_back(NurbsCurve<2>::from_points(KnotVector::bezier(1), ends));
+  }
+  return loop;
+}
+
+TrimmedSurface transform(const TrimmedSurface& face, const AffineMap<3>& map) {
+  return {transform(face.surface(), map), face.loops()};
+}
+
+}  // namespace isorim::geometry
