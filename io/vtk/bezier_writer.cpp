@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -34,12 +33,14 @@
 #include "geometry/errors.h"
 #include "geometry/spline/bspline.h"
 #include "io/atomic_file.h"
+#include "io/vtk/region_triangles.h"
 
 namespace isorim::io {
 
 namespace {
 
-/// One cell to be: a homogeneous net, (Dim + 1) x count with the first parameter fastest, and what is said about it.
+/// One Bézier cell to be: a homogeneous net, (Dim + 1) x count with the first parameter fastest, and what is said about
+/// it.
 struct CellSource {
   /// The degrees; 0 in the second place for a curve.
   std::array<int, 2> degree{};
@@ -79,20 +80,43 @@ std::vector<int> vtk_point_order(const std::array<int, 2>& degree, bool reversed
   return order;
 }
 
-/// A VTK grid of Bézier cells with all arrays allocated for the final size, filled cell by cell.
+std::vector<double> bernstein(int degree, double t) {
+  std::vector<double> values(static_cast<std::size_t>(degree) + 1, 0.0);
+  values[0] = 1.0;
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    for (std::size_t i = k; i > 0; --i) values[i] = t * values[i - 1] + (1.0 - t) * values[i];
+    values[0] *= 1.0 - t;
+  }
+  return values;
+}
+
+/// A VTK grid, filled element by element: a Bézier cell for a whole element or a curve, triangles for a cut element.
 class GridBuilder {
  public:
-  GridBuilder(std::size_t cell_count, std::size_t point_count);
+  GridBuilder();
 
   void add(const CellSource& cell);
-  /// Point fields come in the order of the nets and are put into that of the cells' points.
+  /// The triangles of a cut element, whose own net is `cell`.
+  void add(const CellSource& cell, const RegionTriangles& region);
+  /// Control values come in the order of the nets. They become control values of the cells' points, and values at the
+  /// vertices of triangles.
   void add_point_field(const VtuField& field);
   void add_cell_field(const VtuField& field);
   void add_patch_names(std::span<const std::string> names);
   vtkUnstructuredGrid* finish();
 
  private:
+  /// What became of an element.
+  struct Run {
+    CellSource cell;
+    /// Empty for a Bézier cell: the parameters of the vertices.
+    geometry::Points<2> parameters;
+    std::int64_t first_point = 0;
+  };
+
   const std::vector<int>& point_order(const CellSource& cell);
+  void add_point(const double* point, double weight);
+  void add_cell(int type, const std::array<int, 2>& degree, const CellSource& source);
   template <class IndexArray>
   void set_cells();
   void claim_name(const std::string& name, std::set<std::string>& taken);
@@ -105,32 +129,28 @@ class GridBuilder {
   vtkNew<vtkIntArray> patch_;
   vtkNew<vtkIntArray> element_;
   vtkNew<vtkSignedCharArray> orientation_;
-  /// Where each cell's points start; one more than cells.
-  std::vector<std::int64_t> first_point_{0};
-  /// The order of each cell's points; points into orders_.
-  std::vector<const std::vector<int>*> cell_order_;
+  std::vector<Run> runs_;
+  /// The points of each cell, and where each cell's begin; one more than cells.
+  std::vector<std::int64_t> connectivity_;
+  std::vector<std::int64_t> offsets_{0};
+  std::int64_t control_points_ = 0;
   std::map<std::pair<std::array<int, 2>, bool>, std::vector<int>> orders_;
   std::set<std::string> point_names_{"RationalWeights"};
   std::set<std::string> cell_names_{"HigherOrderDegrees", "patch", "element", "orientation"};
 };
 
-void allocate(vtkDataArray* array, const char* name, int components, std::size_t tuples) {
-  if (name != nullptr) array->SetName(name);
+void name_array(vtkDataArray* array, const char* name, int components) {
+  array->SetName(name);
   array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
 }
 
-GridBuilder::GridBuilder(std::size_t cell_count, std::size_t point_count) {
+GridBuilder::GridBuilder() {
   points_->SetDataTypeToDouble();
-  points_->SetNumberOfPoints(static_cast<vtkIdType>(point_count));
-  allocate(weights_, "RationalWeights", 1, point_count);
-  allocate(degrees_, "HigherOrderDegrees", 3, cell_count);
-  allocate(types_, nullptr, 1, cell_count);
-  allocate(patch_, "patch", 1, cell_count);
-  allocate(element_, "element", 1, cell_count);
-  allocate(orientation_, "orientation", 1, cell_count);
-  first_point_.reserve(cell_count + 1);
-  cell_order_.reserve(cell_count);
+  name_array(weights_, "RationalWeights", 1);
+  name_array(degrees_, "HigherOrderDegrees", 3);
+  name_array(patch_, "patch", 1);
+  name_array(element_, "element", 1);
+  name_array(orientation_, "orientation", 1);
 }
 
 const std::vector<int>& GridBuilder::point_order(const CellSource& cell) {
@@ -140,27 +160,48 @@ const std::vector<int>& GridBuilder::point_order(const CellSource& cell) {
   return order;
 }
 
+void GridBuilder::add_point(const double* point, double weight) {
+  points_->InsertNextPoint(point);
+  weights_->InsertNextValue(weight);
+}
+
+/// The points of the cell are in connectivity_ already.
+void GridBuilder::add_cell(int type, const std::array<int, 2>& degree, const CellSource& source) {
+  const std::array<unsigned char, 3> degrees{static_cast<unsigned char>(degree[0]),
+                                             static_cast<unsigned char>(degree[1]), 0};
+  degrees_->InsertNextTypedTuple(degrees.data());
+  types_->InsertNextValue(static_cast<unsigned char>(type));
+  patch_->InsertNextValue(source.patch);
+  element_->InsertNextValue(source.element);
+  orientation_->InsertNextValue(static_cast<signed char>(source.orientation));
+  offsets_.push_back(static_cast<std::int64_t>(connectivity_.size()));
+}
+
 void GridBuilder::add(const CellSource& cell) {
-  const auto index = static_cast<vtkIdType>(cell_order_.size());
-  const std::vector<int>& order = point_order(cell);
-  double* point = static_cast<vtkDoubleArray*>(points_->GetData())->GetPointer(3 * first_point_.back());
-  double* weight = weights_->GetPointer(first_point_.back());
-  for (const int k : order) {
+  const std::int64_t first = points_->GetNumberOfPoints();
+  const int dimension = cell.rows - 1;
+  for (const int k : point_order(cell)) {
     const double* source = cell.net + k * cell.rows;
-    const int dimension = cell.rows - 1;
-    const double w = source[dimension];
-    for (int d = 0; d < 3; ++d) *point++ = d < dimension ? source[d] / w : 0.0;
-    *weight++ = w;
+    std::array<double, 3> point{};
+    for (int d = 0; d < dimension; ++d) point[static_cast<std::size_t>(d)] = source[d] / source[dimension];
+    connectivity_.push_back(points_->GetNumberOfPoints());
+    add_point(point.data(), source[dimension]);
   }
-  for (int d = 0; d < 3; ++d) {
-    degrees_->SetTypedComponent(index, d, static_cast<unsigned char>(d < 2 ? cell.degree[static_cast<size_t>(d)] : 0));
+  add_cell(cell.is_curve() ? VTK_BEZIER_CURVE : VTK_BEZIER_QUADRILATERAL, cell.degree, cell);
+  runs_.push_back({cell, {}, first});
+  control_points_ += cell.point_count();
+}
+
+void GridBuilder::add(const CellSource& cell, const RegionTriangles& region) {
+  const std::int64_t first = points_->GetNumberOfPoints();
+  for (Eigen::Index i = 0; i < region.points.cols(); ++i) add_point(region.points.col(i).data(), 1.0);
+  for (std::array<int, 3> triangle : region.triangles) {
+    if (cell.orientation < 0) std::swap(triangle[1], triangle[2]);
+    for (const int vertex : triangle) connectivity_.push_back(first + vertex);
+    add_cell(VTK_TRIANGLE, {1, 1}, cell);
   }
-  types_->SetValue(index, cell.is_curve() ? VTK_BEZIER_CURVE : VTK_BEZIER_QUADRILATERAL);
-  patch_->SetValue(index, cell.patch);
-  element_->SetValue(index, cell.element);
-  orientation_->SetValue(index, static_cast<signed char>(cell.orientation));
-  first_point_.push_back(first_point_.back() + cell.point_count());
-  cell_order_.push_back(&order);
+  runs_.push_back({cell, region.parameters, first});
+  control_points_ += cell.point_count();
 }
 
 void GridBuilder::claim_name(const std::string& name, std::set<std::string>& taken) {
@@ -178,27 +219,53 @@ void require_size(const VtuField& field, std::int64_t tuples, const char* what) 
   }
 }
 
+/// The field with control values `values` (components a control point) at a place of the unit cell.
+void interpolate(const CellSource& cell, const double* values, int components, const geometry::Point2& place,
+                 double* result) {
+  const std::vector<double> in_s = bernstein(cell.degree[0], place.x());
+  const std::vector<double> in_t = bernstein(cell.degree[1], place.y());
+  std::fill_n(result, components, 0.0);
+  double sum = 0.0;
+  for (int k = 0; k < cell.point_count(); ++k) {
+    const int columns = cell.degree[0] + 1;
+    const double weight = cell.net[k * cell.rows + cell.rows - 1] * in_s[static_cast<std::size_t>(k % columns)] *
+                          in_t[static_cast<std::size_t>(k / columns)];
+    for (int c = 0; c < components; ++c) result[c] += weight * values[k * components + c];
+    sum += weight;
+  }
+  for (int c = 0; c < components; ++c) result[c] /= sum;
+}
+
 void GridBuilder::add_point_field(const VtuField& field) {
   claim_name(field.name, point_names_);
-  require_size(field, first_point_.back(), "control points");
+  require_size(field, control_points_, "control points");
   vtkNew<vtkDoubleArray> array;
-  allocate(array, field.name.c_str(), field.components, static_cast<std::size_t>(first_point_.back()));
-  double* target = array->GetPointer(0);
-  for (std::size_t cell = 0; cell < cell_order_.size(); ++cell) {
-    const double* source = field.values.data() + first_point_[cell] * field.components;
-    for (const int k : *cell_order_[cell]) {
-      target = std::copy_n(source + k * field.components, field.components, target);
+  name_array(array, field.name.c_str(), field.components);
+  array->SetNumberOfTuples(points_->GetNumberOfPoints());
+  const double* source = field.values.data();
+  for (const Run& run : runs_) {
+    double* target = array->GetPointer(run.first_point * field.components);
+    if (run.parameters.cols() == 0) {
+      for (const int k : point_order(run.cell)) {
+        target = std::copy_n(source + k * field.components, field.components, target);
+      }
     }
+    for (Eigen::Index i = 0; i < run.parameters.cols(); ++i) {
+      interpolate(run.cell, source, field.components, run.parameters.col(i), target + i * field.components);
+    }
+    source += run.cell.point_count() * field.components;
   }
   grid_->GetPointData()->AddArray(array);
 }
 
 void GridBuilder::add_cell_field(const VtuField& field) {
   claim_name(field.name, cell_names_);
-  require_size(field, static_cast<std::int64_t>(cell_order_.size()), "elements");
+  require_size(field, static_cast<std::int64_t>(runs_.size()), "elements");
   vtkNew<vtkDoubleArray> array;
-  allocate(array, field.name.c_str(), field.components, cell_order_.size());
-  std::copy(field.values.begin(), field.values.end(), array->GetPointer(0));
+  name_array(array, field.name.c_str(), field.components);
+  for (vtkIdType cell = 0; cell < element_->GetNumberOfTuples(); ++cell) {
+    array->InsertNextTypedTuple(field.values.data() + std::int64_t{element_->GetValue(cell)} * field.components);
+  }
   grid_->GetCellData()->AddArray(array);
 }
 
@@ -212,14 +279,15 @@ void GridBuilder::add_patch_names(std::span<const std::string> names) {
 template <class IndexArray>
 void GridBuilder::set_cells() {
   using Index = typename IndexArray::ValueType;
+  const auto fill = [](IndexArray* array, const std::vector<std::int64_t>& values) {
+    array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+    std::transform(values.begin(), values.end(), array->GetPointer(0),
+                   [](std::int64_t i) { return static_cast<Index>(i); });
+  };
   vtkNew<IndexArray> offsets;
   vtkNew<IndexArray> connectivity;
-  allocate(offsets, nullptr, 1, first_point_.size());
-  allocate(connectivity, nullptr, 1, static_cast<std::size_t>(first_point_.back()));
-  std::transform(first_point_.begin(), first_point_.end(), offsets->GetPointer(0),
-                 [](std::int64_t i) { return static_cast<Index>(i); });
-  Index* target = connectivity->GetPointer(0);
-  for (std::int64_t i = 0; i < first_point_.back(); ++i) target[i] = static_cast<Index>(i);
+  fill(offsets, offsets_);
+  fill(connectivity, connectivity_);
   vtkNew<vtkCellArray> cells;
   cells->SetData(offsets, connectivity);
   grid_->SetCells(types_, cells);
@@ -227,7 +295,8 @@ void GridBuilder::set_cells() {
 
 vtkUnstructuredGrid* GridBuilder::finish() {
   grid_->SetPoints(points_);
-  if (first_point_.back() <= std::numeric_limits<std::int32_t>::max()) {
+  if (std::max<std::int64_t>(offsets_.back(), points_->GetNumberOfPoints()) <=
+      std::numeric_limits<std::int32_t>::max()) {
     set_cells<vtkTypeInt32Array>();
   } else {
     set_cells<vtkTypeInt64Array>();
@@ -273,12 +342,7 @@ void write_grid(const std::filesystem::path& path, vtkUnstructuredGrid* grid) {
   file.commit();
 }
 
-void write_cells(const std::filesystem::path& path, std::size_t count,
-                 const std::function<CellSource(std::size_t)>& cell, const VtuContent& content) {
-  std::size_t point_count = 0;
-  for (std::size_t i = 0; i < count; ++i) point_count += static_cast<std::size_t>(cell(i).point_count());
-  GridBuilder builder(count, point_count);
-  for (std::size_t i = 0; i < count; ++i) builder.add(cell(i));
+void add_content_and_write(const std::filesystem::path& path, GridBuilder& builder, const VtuContent& content) {
   try {
     for (const VtuField& field : content.point_fields) builder.add_point_field(field);
     for (const VtuField& field : content.cell_fields) builder.add_cell_field(field);
@@ -294,7 +358,10 @@ void write_cells(const std::filesystem::path& path, std::size_t count,
 
 template <int Dim>
 void write_vtu(const std::filesystem::path& path, const geometry::ElementTable<Dim>& table, const VtuContent& content) {
-  const auto cell = [&](std::size_t i) {
+  GridBuilder builder;
+  double chord_tolerance = 0.0;
+  if (!table.regions.empty()) chord_tolerance = content.chord_tolerance * geometry::bounding_box(table).diagonal();
+  for (std::size_t i = 0; i < table.elements.size(); ++i) {
     const geometry::BezierElement<Dim>& element = table.elements[i];
     CellSource source;
     std::copy(element.degree.begin(), element.degree.end(), source.degree.begin());
@@ -303,31 +370,37 @@ void write_vtu(const std::filesystem::path& path, const geometry::ElementTable<D
     source.patch = element.patch;
     source.element = static_cast<int>(i);
     source.orientation = element.orientation;
-    return source;
-  };
-  write_cells(path, table.elements.size(), cell, content);
+    if constexpr (Dim == 3) {
+      if (element.is_cut()) {
+        builder.add(source, triangulate_region(table, element, chord_tolerance));
+        continue;
+      }
+    }
+    builder.add(source);
+  }
+  add_content_and_write(path, builder, content);
 }
 
 template <int Dim>
 void write_curves_vtu(const std::filesystem::path& path, std::span<const geometry::NurbsCurve<Dim>> curves,
                       std::span<const std::string> names) {
-  std::vector<geometry::BezierSegment> segments;
-  std::vector<CellSource> cells;
+  GridBuilder builder;
+  // The builder keeps pointers to the nets.
+  std::vector<std::vector<geometry::BezierSegment>> segments;
+  segments.reserve(curves.size());
   for (std::size_t i = 0; i < curves.size(); ++i) {
-    const auto pieces = geometry::bezier_segments({curves[i].knots(), curves[i].homogeneous()});
-    for (std::size_t k = 0; k < pieces.size(); ++k) {
-      segments.push_back(pieces[k]);
-      cells.push_back({.degree = {curves[i].degree(), 0},
-                       .rows = Dim + 1,
-                       .patch = static_cast<int>(i),
-                       .element = static_cast<int>(k)});
+    segments.push_back(geometry::bezier_segments({curves[i].knots(), curves[i].homogeneous()}));
+    for (std::size_t k = 0; k < segments.back().size(); ++k) {
+      builder.add({.degree = {curves[i].degree(), 0},
+                   .net = segments.back()[k].coefficients.data(),
+                   .rows = Dim + 1,
+                   .patch = static_cast<int>(i),
+                   .element = static_cast<int>(k)});
     }
   }
-  for (std::size_t i = 0; i < cells.size(); ++i) cells[i].net = segments[i].coefficients.data();
   VtuContent content;
   content.patch_names = names;
-  write_cells(
-      path, cells.size(), [&](std::size_t i) { return cells[i]; }, content);
+  add_content_and_write(path, builder, content);
 }
 
 template void write_vtu(const std::filesystem::path&, const geometry::ElementTable<2>&, const VtuContent&);

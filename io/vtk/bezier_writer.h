@@ -14,6 +14,9 @@
 /// RationalWeights, the degrees (p, q, 0) the cell data's attribute HigherOrderDegrees. All reals are stored as
 /// doubles, bit for bit.
 ///
+/// What is left of a cut element is written as flat triangles with their vertices exactly on the surface (see
+/// region_triangles.h); whole elements stay exact.
+///
 /// Each cell also carries `patch`, `element` (its index in the table) and `orientation`. The cell of an element with
 /// orientation -1 is written with its first parameter reversed, s -> 1 - s, so that the natural normal of every cell
 /// in the file is the outward one, which is what VTK shades; `orientation` keeps the value of the table. The names of
@@ -28,8 +31,8 @@ struct VtuField {
   int components = 1;
   /// components x n, column-major. Point fields: n is the number of all control points, element by element in the
   /// order of the table, each in the order of its net; the values are control values in the element's own rational
-  /// basis (sum of N_i w_i f_i / sum of N_i w_i), not values at the control points. Cell fields: n is the number of
-  /// elements.
+  /// basis (sum of N_i w_i f_i / sum of N_i w_i), not values at the control points; vertices of triangles get the
+  /// values of that field. Cell fields: n is the number of elements; the triangles of one share its value.
   std::span<const double> values;
 };
 
@@ -38,14 +41,15 @@ struct VtuContent {
   /// One a patch, or none.
   std::span<const std::string> patch_names;
   std::vector<VtuField> point_fields;
-  std::vector<VtuField> cell_fields;
+  std::vector<VtuField> cell_fields = {};
+  /// How far the triangles of cut elements may be from the surface, relative to the diagonal of the bounding box.
+  double chord_tolerance = 2e-4;
 };
 
 /// Writes the curves (Dim = 2, with z = 0) or surfaces (Dim = 3) of a boundary, of any mixture of degrees.
 ///
 /// The file appears whole or not at all. Throws InputError with the path if it cannot be written or if a field has the
-/// wrong number of values or a name that is taken. Memory: 36 bytes a control point and about 35 a cell besides the
-/// table.
+/// wrong number of values or a name that is taken.
 template <int Dim>
 void write_vtu(const std::filesystem::path& path, const geometry::ElementTable<Dim>& table,
                const VtuContent& content = {});
