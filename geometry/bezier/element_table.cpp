@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "geometry/bezier/subdivision.h"
 #include "geometry/errors.h"
 #include "geometry/spline/bspline.h"
+#include "geometry/trimming/face_cells.h"
 
 namespace isorim::geometry {
 
@@ -102,32 +105,71 @@ double common_weight(const NurbsSurface<3>& surface, const Strip& strip, const E
   return weight;
 }
 
-void append_patch(ElementTable<3>& table, const Patch<3>& patch, std::size_t index) {
-  if (std::holds_alternative<TrimmedSurface>(patch.shape))
-    throw GeometryError(fmt::format("patch \"{}\" is trimmed, which elements do not know yet", patch.name));
-  const NurbsSurface<3>& surface = surface_of(patch.shape);
+/// Narrows the last element of the table, whose net is that of a whole cell, to the rectangle of its region.
+void narrow(ElementTable<3>& table, CellRegion&& kept) {
+  BezierElement<3>& element = table.elements.back();
+  element.region = static_cast<std::int32_t>(table.regions.size());
+  table.regions.push_back(std::move(kept.region));
+  const std::array<int, 2> degrees{element.degree[0], element.degree[1]};
+  const std::array<Interval, 2> rectangle{kept.u, kept.v};
+  const std::span<double> net(table.nets.data() + element.offset, table.nets.size() - element.offset);
+  for (std::size_t d = 0; d < 2; ++d) {
+    const Interval cell = element.domain[d];
+    const auto within = [&](double u) { return (u - cell.first) / cell.length(); };
+    restrict_net(net, 4, degrees, static_cast<int>(d), {within(rectangle[d].first), within(rectangle[d].last)});
+    element.domain[d] = rectangle[d];
+  }
+}
+
+/// The elements of a surface, or those of its cells of which something is kept.
+void append_surface(ElementTable<3>& table, const NurbsSurface<3>& surface, FaceCells* kept, std::size_t index,
+                    int orientation) {
   const Eigen::Index nu = surface.count_u();
   const std::vector<ExtractionOperator> in_u = extraction_operators(surface.knots_u());
   const std::vector<ExtractionOperator> in_v = extraction_operators(surface.knots_v());
   const int p = surface.knots_u().degree();
   const int q = surface.knots_v().degree();
   const std::size_t points = static_cast<std::size_t>((p + 1) * (q + 1));
-  reserve_more(table, in_u.size() * in_v.size(), points);
+  const auto cell_count = [&] {
+    if (!kept) return in_u.size() * in_v.size();
+    return kept->state.size() - static_cast<std::size_t>(std::ranges::count(kept->state, FaceCells::outside));
+  };
+  reserve_more(table, cell_count(), points);
   Strip strip;
-  for (const ExtractionOperator& v : in_v) {
-    fill_strip(surface, v, strip);
-    for (const ExtractionOperator& u : in_u) {
-      BezierElement<3>& element = append_element(table, index, patch.orientation);
+  for (std::size_t row = 0; row < in_v.size(); ++row) {
+    const std::span<const std::int32_t> states =
+        kept ? std::span(kept->state).subspan(row * in_u.size(), in_u.size()) : std::span<const std::int32_t>();
+    const auto is_outside = [](std::int32_t state) { return state == FaceCells::outside; };
+    if (kept && std::ranges::all_of(states, is_outside)) continue;
+    fill_strip(surface, in_v[row], strip);
+    for (std::size_t column = 0; column < in_u.size(); ++column) {
+      const std::int32_t state = kept ? states[column] : FaceCells::whole;
+      if (is_outside(state)) continue;
+      BezierElement<3>& element = append_element(table, index, orientation);
       element.degree = {static_cast<std::int8_t>(p), static_cast<std::int8_t>(q)};
-      element.domain = {u.domain, v.domain};
+      element.domain = {in_u[column].domain, in_v[row].domain};
       table.nets.resize(table.nets.size() + 4 * points);
       double* target = table.nets.data() + element.offset;
       for (Eigen::Index j = 0; j <= q; ++j)
-        extract<3>(strip.net.data() + 4 * (u.first_function + j * nu), u.matrix, target + 4 * j * (p + 1));
-      const double weight = common_weight(surface, strip, u, v);
+        extract<3>(strip.net.data() + 4 * (in_u[column].first_function + j * nu), in_u[column].matrix,
+                   target + 4 * j * (p + 1));
+      const double weight = common_weight(surface, strip, in_u[column], in_v[row]);
       element.polynomial = weight > 0.0;
       if (element.polynomial) divide_out_weight<3>({target, 4, (p + 1) * (q + 1)}, weight);
+      if (state >= 0) narrow(table, std::move(kept->regions[static_cast<std::size_t>(state)]));
     }
+  }
+}
+
+void append_patch(ElementTable<3>& table, const Patch<3>& patch, std::size_t index) {
+  const auto* face = std::get_if<TrimmedSurface>(&patch.shape);
+  if (!face) return append_surface(table, surface_of(patch.shape), nullptr, index, patch.orientation);
+  try {
+    FaceCells cells = cut_into_cells(*face);
+    append_surface(table, face->surface(), &cells, index, patch.orientation);
+  } catch (Error& error) {
+    error.add_context(fmt::format("patch \"{}\"", patch.name));
+    throw;
   }
 }
 

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/vocabulary.h"
+
 namespace isorim::geometry {
 
 /// The control nets of the two halves of a Bézier element, cut at `fraction` in (0, 1) of one direction (de
@@ -13,5 +15,9 @@ namespace isorim::geometry {
 std::pair<std::vector<double>, std::vector<double>> subdivide(std::span<const double> net, int rows,
                                                               std::span<const int> degrees, int direction,
                                                               double fraction = 0.5);
+
+/// Replaces the net of a Bézier element by that of its part over `piece` (within [0, 1]) of one direction. Equal
+/// coordinates stay equal bit for bit.
+void restrict_net(std::span<double> net, int rows, std::span<const int> degrees, int direction, Interval piece);
 
 }  // namespace isorim::geometry

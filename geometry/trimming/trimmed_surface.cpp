@@ -9,6 +9,7 @@
 #include "geometry/errors.h"
 #include "geometry/intersection/plane_pieces.h"
 #include "geometry/spline/bspline.h"
+#include "geometry/trimming/loop_pieces.h"
 
 namespace isorim::geometry {
 namespace {
@@ -68,30 +69,9 @@ void require_closed(const TrimLoop& loop, const AllowedParameters& allowed, std:
   }
 }
 
-/// Curves and the straight lines between them.
-void append_pieces(const TrimLoop& loop, std::vector<PlanePiece>& pieces) {
-  const auto append_line = [&](const Point2& from, const Point2& to) {
-    if (from == to) return;
-    HomogeneousPoints<2> net(3, 2);
-    net << from, to, 1.0, 1.0;
-    pieces.emplace_back(std::move(net));
-  };
-  for (std::size_t k = 0; k < loop.curves.size(); ++k) {
-    for (BezierSegment& segment : bezier_segments({loop.curves[k].knots(), loop.curves[k].homogeneous()})) {
-      if (!pieces.empty() && k > 0) append_line(pieces.back().end(), PlanePiece(segment.coefficients).start());
-      pieces.emplace_back(std::move(segment.coefficients));
-    }
-  }
-  append_line(pieces.back().end(), start_of(loop.curves.front()));
-}
-
 void require_area(const std::vector<TrimLoop>& loops, const AllowedParameters& allowed) {
-  std::vector<PlanePiece> pieces;
-  for (const TrimLoop& loop : loops) {
-    std::vector<PlanePiece> own;
-    append_pieces(loop, own);
-    pieces.insert(pieces.end(), own.begin(), own.end());
-  }
+  const std::vector<PlanePiece> pieces = loop_pieces(loops);
+  if (pieces.empty()) throw GeometryError("the loops enclose no area of the surface's parameters: all are points");
   const AreaEstimate area = doubled_signed_area(pieces, 1e-15 * allowed.u.length() * allowed.v.length());
   if (area.value > 0.0) return;
   throw GeometryError(
