@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "geometry/bezier/subdivision.h"
 #include "geometry/errors.h"
 
 namespace isorim::geometry {
@@ -149,9 +150,27 @@ class RootSearch {
     search(right, {range.middle(), range.last}, depth + 1);
   }
 
-  std::vector<Interval> take() { return std::move(roots_); }
+  /// Neighbours between which `whole` is zero within twice the tolerance (that of its value and that of its bound by
+  /// the coefficients) are one root.
+  std::vector<Interval> merged(const Net& whole) const {
+    std::vector<Interval> result;
+    for (const Interval& root : roots_) {
+      if (!result.empty() && is_zero(whole, {result.back().last, root.first}))
+        result.back().last = root.last;
+      else
+        result.push_back(root);
+    }
+    return result;
+  }
 
  private:
+  static bool is_zero(Net net, Interval range) {
+    const int degree = static_cast<int>(net.cols()) - 1;
+    restrict_net({net.data(), static_cast<std::size_t>(net.size())}, 2, {&degree, 1}, 0, range);
+    net.row(1) *= 2.0;
+    return signs_of(net).leading_zeros == net.cols();
+  }
+
   void report(Interval root) {
     if (!roots_.empty() && root.first <= roots_.back().last)
       roots_.back().last = std::max(roots_.back().last, root.last);
@@ -170,7 +189,7 @@ std::vector<Interval> roots_of(const Net& net) {
                                       i, net(0, i), net(1, i)));
   RootSearch search;
   search.search(net, {0.0, 1.0});
-  return search.take();
+  return search.merged(net);
 }
 
 }  // namespace
