@@ -34,18 +34,23 @@ template <class E>
 concept PieceEvaluator = requires(const E& evaluator, const typename E::Piece& piece,
                                   std::span<const typename E::Piece* const> batch, const Orders<E::directions>& orders,
                                   std::span<typename E::Values> values, typename E::Values& difference) {
-  // Bisections that led to the piece.
+  // Bisections that led to the piece, and whether nothing of it is to be integrated.
   { piece.depth } -> std::convertible_to<int>;
+  { piece.empty() } -> std::same_as<bool>;
   // Orders at which the error is expected to meet the allowance.
   { evaluator.start_orders(piece) } -> std::same_as<Orders<E::directions>>;
   // Two pieces may stand in one batch.
   { evaluator.same_kind(piece, piece) } -> std::same_as<bool>;
   { E::batch_size } -> std::convertible_to<int>;
   evaluator.evaluate(batch, orders, values);
+  // Points of the rule of those orders.
+  { evaluator.points(piece, orders) } -> std::same_as<std::int64_t>;
   // The two halves in a direction.
   { evaluator.split(piece, 0) } -> std::same_as<std::pair<typename E::Piece, typename E::Piece>>;
   // The absolute error, above zero, that each of the K integrals may have on a piece where they have that value.
   { evaluator.allowance(piece, difference) } -> std::same_as<typename E::Values>;
+  // Sums of absolute values behind the integrals of a piece: what their rounding is relative to.
+  { evaluator.magnitude(piece, difference) } -> std::same_as<typename E::Values>;
   // Sets the differences of what the rule integrates exactly to zero.
   evaluator.clear_exact(piece, orders, difference);
 };
@@ -56,17 +61,17 @@ struct AdaptiveTotals {
   Values sum = Values::Zero();
   /// Estimated error of the sum, without rounding.
   Values error = Values::Zero();
-  /// Sum of the absolute values of the pieces' integrals: what rounding is relative to.
+  /// What rounding is relative to: see PieceEvaluator.
   Values magnitude = Values::Zero();
   /// Points at which the integrand was evaluated.
   std::int64_t evaluations = 0;
   /// Pieces given up at the greatest depth or after the most bisections.
   std::int64_t unfinished = 0;
 
-  void add(const Values& value, const Values& estimate) {
+  void add(const Values& value, const Values& estimate, const Values& size) {
     sum += value;
     error += estimate;
-    magnitude += value.abs();
+    magnitude += size;
   }
   void add(const AdaptiveTotals& other) {
     sum += other.sum;
@@ -115,7 +120,7 @@ class AdaptiveIntegrator {
     while (!work_.empty()) {
       const std::vector<Piece> batch = take_batch([](const Piece&) { return true; });
       evaluate_batch(batch, orders, values);
-      for (std::size_t i = 0; i < batch.size(); ++i) totals_.add(values[i], Values::Zero());
+      for (std::size_t i = 0; i < batch.size(); ++i) add(batch[i], values[i], Values::Zero());
     }
     return totals_;
   }
@@ -152,10 +157,12 @@ class AdaptiveIntegrator {
     return orders;
   }
 
+  void add(const Piece& piece, const Values& value, const Values& estimate) {
+    totals_.add(value, estimate, evaluator_.magnitude(piece, value));
+  }
+
   void evaluate(std::span<const Piece* const> batch, const Orders<directions>& orders, std::span<Values> values) {
-    std::int64_t points = static_cast<std::int64_t>(batch.size());
-    for (const int order : orders) points *= order;
-    totals_.evaluations += points;
+    for (const Piece* piece : batch) totals_.evaluations += evaluator_.points(*piece, orders);
     evaluator_.evaluate(batch, orders, values);
   }
 
@@ -203,7 +210,7 @@ class AdaptiveIntegrator {
       evaluator_.clear_exact(batch[i], orders, difference);
       State state{std::move(batch[i]), orders, values[i], difference};
       if (fixed || excess(state, state.difference) <= 1.0) {
-        totals_.add(state.value, state.difference);
+        add(state.piece, state.value, state.difference);
       } else {
         refine(std::move(state));
       }
@@ -237,7 +244,7 @@ class AdaptiveIntegrator {
       const std::array<Values, directions> from = directional_differences(state);
       Values together = Values::Zero();
       for (const Values& difference : from) together += difference;
-      if (excess(state, together) <= 1.0) return totals_.add(state.value, together);
+      if (excess(state, together) <= 1.0) return add(state.piece, state.value, together);
       std::array<double, directions> excesses;
       for (std::size_t d = 0; d < directions; ++d) excesses[d] = excess(state, from[d]);
       const double worst = *std::max_element(excesses.begin(), excesses.end());
@@ -257,7 +264,7 @@ class AdaptiveIntegrator {
         difference = kept + difference * slowness(before, difference, evaluator_.noise(state.piece, value));
         state = {std::move(state.piece), raised, value, difference};
         const double after = excess(state, state.difference);
-        if (after <= 1.0) return totals_.add(state.value, state.difference);
+        if (after <= 1.0) return add(state.piece, state.value, state.difference);
         if (after < 0.03 * worst) continue;
       }
       return bisect(state, excesses);
@@ -283,12 +290,12 @@ class AdaptiveIntegrator {
   void bisect(const State& state, const std::array<double, directions>& excesses) {
     if (state.piece.depth >= options_.max_depth || --bisections_left_ < 0) {
       ++totals_.unfinished;
-      return totals_.add(state.value, state.difference);
+      return add(state.piece, state.value, state.difference);
     }
     const auto direction = static_cast<int>(std::max_element(excesses.begin(), excesses.end()) - excesses.begin());
     std::pair<Piece, Piece> halves = evaluator_.split(state.piece, direction);
-    work_.push_back(std::move(halves.second));
-    work_.push_back(std::move(halves.first));
+    if (!halves.second.empty()) work_.push_back(std::move(halves.second));
+    if (!halves.first.empty()) work_.push_back(std::move(halves.first));
   }
 
   const Evaluator& evaluator_;

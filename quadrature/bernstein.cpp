@@ -31,19 +31,25 @@ std::vector<double> bernstein_values(int degree, double u) {
 BernsteinTable make_table(int degree, int points) {
   BernsteinTable table{degree, points, {}, {}};
   for (const double u : gauss_legendre(points).nodes) {
-    const std::vector<double> values = bernstein_values(degree, u);
-    table.values.insert(table.values.end(), values.begin(), values.end());
-    const std::vector<double> lower = bernstein_values(degree - 1, u);
-    for (int i = 0; i <= degree; ++i) {
-      const double left = i > 0 ? lower[static_cast<std::size_t>(i - 1)] : 0.0;
-      const double right = i < degree ? lower[static_cast<std::size_t>(i)] : 0.0;
-      table.derivatives.push_back(degree * (left - right));
-    }
+    const BernsteinValues at_node = bernstein_polynomials(degree, u);
+    table.values.insert(table.values.end(), at_node.values.begin(), at_node.values.end());
+    table.derivatives.insert(table.derivatives.end(), at_node.derivatives.begin(), at_node.derivatives.end());
   }
   return table;
 }
 
 }  // namespace
+
+BernsteinValues bernstein_polynomials(int degree, double u) {
+  BernsteinValues result{bernstein_values(degree, u), {}};
+  const std::vector<double> lower = bernstein_values(degree - 1, u);
+  for (int i = 0; i <= degree; ++i) {
+    const double left = i > 0 ? lower[static_cast<std::size_t>(i - 1)] : 0.0;
+    const double right = i < degree ? lower[static_cast<std::size_t>(i)] : 0.0;
+    result.derivatives.push_back(degree * (left - right));
+  }
+  return result;
+}
 
 const BernsteinTable& bernstein_table(int degree, int points) {
   assert(1 <= degree && degree <= geometry::KnotVector::max_degree);

@@ -17,6 +17,13 @@ struct BernsteinTable {
   const double* derivatives_at(int node) const { return derivatives.data() + node * (degree + 1); }
 };
 
+/// The degree + 1 Bernstein polynomials and their derivatives at u.
+struct BernsteinValues {
+  std::vector<double> values;
+  std::vector<double> derivatives;
+};
+BernsteinValues bernstein_polynomials(int degree, double u);
+
 /// The table for the n-point rule on [0, 1]; 1 <= degree <= 30. Computed once and kept; safe from any thread.
 const BernsteinTable& bernstein_table(int degree, int points);
 

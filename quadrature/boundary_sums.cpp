@@ -72,34 +72,49 @@ class SumsEvaluator {
   Orders<directions> start_orders(const Piece& piece) const { return expected_orders(piece, tolerance_); }
 
   bool same_kind(const Piece& a, const Piece& b) const {
-    return a.element->degree == b.element->degree && a.element->polynomial == b.element->polynomial;
+    return a.element->degree == b.element->degree && a.element->polynomial == b.element->polynomial &&
+           a.is_cut() == b.is_cut();
   }
 
   void evaluate(std::span<const Piece* const> pieces, const Orders<directions>& orders,
                 std::span<Values> values) const {
     ElementBatch<Dim> batch = batch_of(*pieces.front());
-    for (const Piece* piece : pieces) batch.nets[static_cast<std::size_t>(batch.size++)] = piece->net();
-    sum_over_elements(batch, pole_, orders, values.first(pieces.size()));
+    const Orders<directions> nodes = nodes_of_rule(*pieces.front(), orders);
+    for (const Piece* piece : pieces) {
+      const auto lane = static_cast<std::size_t>(batch.size++);
+      batch.nets[lane] = piece->net();
+      if constexpr (Dim == 3) {
+        if (piece->is_cut()) batch.regions[lane] = &piece->region->moments(nodes);
+      }
+    }
+    sum_over_elements(batch, pole_, nodes, values.first(pieces.size()));
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       values[i].template tail<Layout::count - 1>() *= pieces[i]->element->orientation;
     }
   }
+
+  std::int64_t points(const Piece& piece, const Orders<directions>& orders) const {
+    return points_of_rule(piece, orders);
+  }
+
+  Values magnitude(const Piece& piece, const Values& value) const { return amplification(piece) * value.abs(); }
 
   std::pair<Piece, Piece> split(const Piece& piece, int direction) const { return bisect(piece, direction); }
 
   /// Half of the target is shared out by measure, half equally among elements and their halves; and a piece may always
   /// err by rounding.
   Values allowance(const Piece& piece, const Values& value) const {
-    const double measure = value[Layout::measure];
+    const double measure = std::max(0.0, value[Layout::measure]);
     const double share = 0.5 * std::ldexp(1.0 / static_cast<double>(scales_.elements), -piece.depth) +
                          0.5 * measure / scales_.sums[Layout::measure];
     return (target_ * share).max(noise(piece, value));
   }
 
-  Values noise(const Piece&, const Values& value) const {
+  Values noise(const Piece& piece, const Values& value) const {
+    const double measure = amplification(piece) * std::abs(value[Layout::measure]);
     Values noise;
     for (int k = 0; k < Layout::count; ++k) {
-      const double scale = value[Layout::measure] * std::pow(scales_.radius, power_of_distance<Dim>(k));
+      const double scale = measure * std::pow(scales_.radius, power_of_distance<Dim>(k));
       noise[k] = std::max(difference_noise * scale, std::numeric_limits<double>::min());
     }
     return noise;
@@ -131,6 +146,11 @@ class SumsEvaluator {
     target_.template segment<Dim>(Layout::first)
         .fill(std::min(tolerance_ * content * scales_.radius, 0.1 * (Dim + 1) / Dim * inertia_error / offset));
     target_.template tail<Layout::count - Layout::second>().fill(0.5 * (Dim + 2) / Dim * inertia_error);
+  }
+
+  /// A piece that has been evaluated: see RegionMoments.
+  static double amplification(const Piece& piece) {
+    return piece.is_cut() ? piece.region->moments({}).amplification() : 1.0;
   }
 
   geometry::Point<Dim> pole_;
@@ -168,7 +188,10 @@ std::vector<ElementPiece<Dim>> pieces_of(const geometry::ElementTable<Dim>& tabl
                                          std::span<const geometry::BezierElement<Dim>> elements) {
   std::vector<ElementPiece<Dim>> pieces;
   pieces.reserve(elements.size());
-  for (const geometry::BezierElement<Dim>& element : elements) pieces.push_back(whole_element(table, element));
+  for (const geometry::BezierElement<Dim>& element : elements) {
+    ElementPiece<Dim> piece = whole_element(table, element);
+    if (!piece.empty()) pieces.push_back(std::move(piece));
+  }
   return pieces;
 }
 
@@ -236,13 +259,16 @@ BoundarySums<Dim> boundary_sums(const geometry::ElementTable<Dim>& table, const 
     const ElementSums<Dim> wanted = SumsEvaluator<Dim>(pole, scales, scope, options.tolerance).target();
     if (options.fixed_points > 0 || scales_were_right || (totals.error <= wanted).all()) break;
   }
-  const bool exact = std::all_of(table.elements.begin(), table.elements.end(),
-                                 [](const geometry::BezierElement<Dim>& element) { return element.polynomial; });
+  using Element = geometry::BezierElement<Dim>;
+  const bool adaptive = options.fixed_points == 0;
+  const bool exact = adaptive && std::all_of(table.elements.begin(), table.elements.end(),
+                                             [](const Element& element) { return element.polynomial; });
+  const bool exact_measure = exact && std::all_of(table.elements.begin(), table.elements.end(),
+                                                  [&](const Element& element) { return is_affine(table, element); });
   const ElementSums<Dim> rounding = rounding_error(scales, totals);
   ElementSums<Dim> noise = ElementSums<Dim>::Constant(difference_noise * totals.sum[Layout::measure]);
   for (int k = 0; k < Layout::count; ++k) noise[k] *= std::pow(scales.radius, power_of_distance<Dim>(k));
-  return {totals.sum, totals.error + rounding, rounding + noise, totals.evaluations,
-          exact && options.fixed_points == 0};
+  return {totals.sum, totals.error + rounding, rounding + noise, totals.evaluations, exact, exact_measure};
 }
 
 template BoundarySums<2> boundary_sums(const geometry::ElementTable<2>&, const geometry::Point<2>&, SumScope,

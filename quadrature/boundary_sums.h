@@ -20,8 +20,10 @@ struct BoundarySums {
   ElementSums<Dim> rounding;
   /// Points of the boundary at which position and tangents were evaluated.
   std::int64_t evaluations = 0;
-  /// Every element is polynomial, so all sums but the measure are exact up to rounding.
+  /// Every element is polynomial, so all sums but the measure are exact up to rounding, whatever is cut off.
   bool exact = false;
+  /// Every element is an affine image of its cell, so the measure is exact as well.
+  bool exact_measure = false;
 };
 
 /// Which sums the tolerance of Options is aimed at. The rest is computed all the same.

@@ -1,6 +1,7 @@
 #include "quadrature/element_piece.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "geometry/bezier/subdivision.h"
 #include "quadrature/adaptive.h"
@@ -49,6 +50,12 @@ int rational_order(double ratio, int degree, double tolerance) {
   return std::min(static_cast<int>(std::ceil(points)) + 2 * degree + 1, largest_adaptive_order);
 }
 
+template <int Dim>
+void keep_part(ElementPiece<Dim>& piece, CutRegion region) {
+  if (region.extent() != CutRegion::Extent::everything)
+    piece.region = std::make_shared<const CutRegion>(std::move(region));
+}
+
 }  // namespace
 
 template <int Dim>
@@ -57,8 +64,38 @@ std::pair<ElementPiece<Dim>, ElementPiece<Dim>> bisect(const ElementPiece<Dim>& 
   const auto size = static_cast<std::size_t>(piece.element->control_point_count() * (Dim + 1));
   auto [first, second] = geometry::subdivide({piece.net(), size}, Dim + 1, degrees, direction);
   const int depth = piece.depth + 1;
-  return {ElementPiece<Dim>{piece.element, piece.element_net, std::move(first), depth},
-          ElementPiece<Dim>{piece.element, piece.element_net, std::move(second), depth}};
+  std::pair<ElementPiece<Dim>, ElementPiece<Dim>> halves{{piece.element, piece.element_net, std::move(first), depth},
+                                                         {piece.element, piece.element_net, std::move(second), depth}};
+  if (piece.is_cut()) {
+    auto [kept_of_first, kept_of_second] = piece.region->halves(direction);
+    keep_part(halves.first, std::move(kept_of_first));
+    keep_part(halves.second, std::move(kept_of_second));
+  }
+  return halves;
+}
+
+template <int Dim>
+bool is_affine(const geometry::ElementTable<Dim>& table, const geometry::BezierElement<Dim>& element) {
+  if (!element.polynomial) return false;
+  constexpr double roundings = 16.0 * std::numeric_limits<double>::epsilon();
+  const auto net = table.net_matrix(element);
+  const int columns = element.degree[0] + 1;
+  const auto corner = net.col(0).template head<Dim>();
+  std::array<geometry::Vector<Dim>, Dim - 1> edges;
+  for (std::size_t d = 0; d < Dim - 1; ++d) {
+    const int end = d == 0 ? element.degree[0] : element.degree[d] * columns;
+    edges[d] = (net.col(end).template head<Dim>() - corner) / element.degree[d];
+  }
+  const double size = net.template topRows<Dim>().cwiseAbs().maxCoeff();
+  for (int k = 0; k < net.cols(); ++k) {
+    geometry::Vector<Dim> rest = net.col(k).template head<Dim>() - corner - (k % columns) * edges[0];
+    if constexpr (Dim == 3) {
+      const int row = k / columns;
+      rest -= row * edges[1];
+    }
+    if (rest.cwiseAbs().maxCoeff() > roundings * size) return false;
+  }
+  return true;
 }
 
 template <int Dim>
@@ -77,6 +114,8 @@ Orders<Dim - 1> expected_orders(const ElementPiece<Dim>& piece, double tolerance
 
 template std::pair<ElementPiece<2>, ElementPiece<2>> bisect(const ElementPiece<2>&, int);
 template std::pair<ElementPiece<3>, ElementPiece<3>> bisect(const ElementPiece<3>&, int);
+template bool is_affine(const geometry::ElementTable<2>&, const geometry::BezierElement<2>&);
+template bool is_affine(const geometry::ElementTable<3>&, const geometry::BezierElement<3>&);
 template Orders<1> expected_orders(const ElementPiece<2>&, double);
 template Orders<2> expected_orders(const ElementPiece<3>&, double);
 

@@ -3,11 +3,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "geometry/bezier/element_table.h"
+#include "quadrature/cut_region.h"
 #include "quadrature/element_sums.h"
 
 namespace isorim::quadrature {
@@ -21,13 +24,41 @@ struct ElementPiece {
   std::vector<double> own_net;
   /// Bisections that led to the piece.
   int depth = 0;
+  /// What is kept of the piece; null if all of it is. Of surfaces only.
+  std::shared_ptr<const CutRegion> region = nullptr;
 
   const double* net() const { return own_net.empty() ? element_net : own_net.data(); }
+  bool is_cut() const { return region != nullptr; }
+  /// Nothing of it is kept.
+  bool empty() const { return is_cut() && region->extent() == CutRegion::Extent::nothing; }
 };
 
+/// The piece that is the whole element, or what is kept of it.
 template <int Dim>
 ElementPiece<Dim> whole_element(const geometry::ElementTable<Dim>& table, const geometry::BezierElement<Dim>& element) {
-  return {&element, table.nets.data() + element.offset, {}, 0};
+  ElementPiece<Dim> piece{&element, table.nets.data() + element.offset, {}, 0};
+  if (element.is_cut())
+    piece.region = std::make_shared<CutRegion>(table.regions[static_cast<std::size_t>(element.region)]);
+  return piece;
+}
+
+/// The tensor Gauss-Legendre nodes that a rule of the given orders uses: on a cut piece twice as many, because there
+/// n nodes integrate polynomials of degree n - 1 exactly, not 2 n - 1. So a rule of n points means the same accuracy on
+/// whole and on cut pieces.
+template <int Dim>
+Orders<Dim - 1> nodes_of_rule(const ElementPiece<Dim>& piece, Orders<Dim - 1> orders) {
+  if (piece.is_cut()) {
+    for (int& order : orders) order *= 2;
+  }
+  return orders;
+}
+
+/// The number of points of that rule.
+template <int Dim>
+std::int64_t points_of_rule(const ElementPiece<Dim>& piece, const Orders<Dim - 1>& orders) {
+  std::int64_t points = 1;
+  for (const int nodes : nodes_of_rule(piece, orders)) points *= nodes;
+  return points;
 }
 
 /// The halves of a piece in one of the element's directions.
@@ -41,6 +72,11 @@ template <int Dim>
 constexpr int exact_order(int degree) {
   return Dim == 2 ? 2 * degree : 5 * degree / 2;
 }
+
+/// The element is an affine image of its unit cell, to rounding: so its normal is constant, and the area or length is a
+/// polynomial as well.
+template <int Dim>
+bool is_affine(const geometry::ElementTable<Dim>& table, const geometry::BezierElement<Dim>& element);
 
 /// The order in each direction at which a rule of two points less is expected to integrate the sums to the relative
 /// tolerance: exact_order where all weights are 1, two more (so that the lesser rule is exact) where they are constant

@@ -5,23 +5,12 @@
 
 #include "quadrature/bernstein.h"
 #include "quadrature/gauss_legendre.h"
-
-// The kernels are compiled for the oldest processor of the platform and, with GCC on x86-64, for AVX2 with FMA as well;
-// the processor decides at run time.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX2__)
-#define ISORIM_DISPATCH
-#endif
+#include "quadrature/lanes.h"
+#include "quadrature/region_weights.h"
 
 namespace isorim::quadrature {
 
 namespace {
-
-/// One number for each element of the batch. GCC and Clang lower it to whatever registers the target has.
-using Lanes = double __attribute__((vector_size(kernel_lanes * sizeof(double))));
-
-struct alignas(Lanes) Packet {
-  Lanes value;
-};
 
 /// A rule in one direction and the Bernstein polynomials of one degree at its points: see BernsteinTable.
 struct DirectionTable {
@@ -42,6 +31,8 @@ struct KernelInput {
   const Packet* net;
   DirectionTable u;
   DirectionTable v;
+  /// Of cut elements: a weight for each point, v fastest, lane by lane.
+  const Packet* weights;
 };
 
 /// input, room for the rows' values (surfaces only), sums to be added to.
@@ -49,6 +40,8 @@ using Kernel = void (*)(const KernelInput&, Packet*, Lanes*);
 struct KernelSet {
   Kernel rational_surface;
   Kernel polynomial_surface;
+  Kernel cut_rational_surface;
+  Kernel cut_polynomial_surface;
   Kernel rational_curve;
   Kernel polynomial_curve;
 };
@@ -66,9 +59,7 @@ namespace haswell {
 #pragma GCC pop_options
 
 const KernelSet& kernels() {
-  static const KernelSet& best =
-      __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? haswell::kernels : baseline::kernels;
-  return best;
+  return has_wide_registers() ? haswell::kernels : baseline::kernels;
 }
 #else
 const KernelSet& kernels() {
@@ -101,6 +92,12 @@ void interleave(const ElementBatch<Dim>& batch, const geometry::Point<Dim>& pole
   }
 }
 
+Kernel surface_kernel(const ElementBatch<3>& batch) {
+  const KernelSet& set = kernels();
+  if (batch.regions[0] != nullptr) return batch.polynomial ? set.cut_polynomial_surface : set.cut_rational_surface;
+  return batch.polynomial ? set.polynomial_surface : set.rational_surface;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -108,13 +105,14 @@ void sum_over_elements(const ElementBatch<Dim>& batch, const geometry::Point<Dim
                        std::span<ElementSums<Dim>> sums) {
   static thread_local Workspace workspace;
   interleave(batch, pole, workspace.net);
-  KernelInput input{workspace.net.data(), direction_table(batch.degree[0], orders[0]), {}};
+  KernelInput input{workspace.net.data(), direction_table(batch.degree[0], orders[0]), {}, nullptr};
   Lanes lane_sums[SumLayout<Dim>::count] = {};
   if constexpr (Dim == 3) {
     input.v = direction_table(batch.degree[1], orders[1]);
     workspace.row_values.resize(static_cast<std::size_t>(batch.degree[1] + 1) * 2 * (Dim + 1));
-    const Kernel kernel = batch.polynomial ? kernels().polynomial_surface : kernels().rational_surface;
-    kernel(input, workspace.row_values.data(), lane_sums);
+    if (batch.regions[0] != nullptr)
+      input.weights = weights_of_regions({batch.regions.data(), static_cast<std::size_t>(batch.size)}, orders).data();
+    surface_kernel(batch)(input, workspace.row_values.data(), lane_sums);
   } else {
     const Kernel kernel = batch.polynomial ? kernels().polynomial_curve : kernels().rational_curve;
     kernel(input, nullptr, lane_sums);

@@ -40,6 +40,8 @@ using Orders = std::array<int, Directions>;
 /// How many elements are evaluated side by side (one in each lane of a vector register).
 inline constexpr int kernel_lanes = 4;
 
+struct RegionMoments;
+
 /// Up to kernel_lanes elements of the same kind.
 template <int Dim>
 struct ElementBatch {
@@ -49,9 +51,12 @@ struct ElementBatch {
   std::array<int, Dim - 1> degree{};
   /// All weights are 1.
   bool polynomial = false;
+  /// For cut elements: what is kept of each. Cut and whole elements do not mix; curves are never cut.
+  std::array<const RegionMoments*, kernel_lanes> regions{};
 };
 
-/// The sums over each element of the batch by the tensor Gauss-Legendre rule, with respect to the element's natural
+/// The sums over each element of the batch by the tensor Gauss-Legendre rule (over cut elements by the weights of
+/// region_moments.h at its nodes, of which both numbers are even), with respect to the element's natural
 /// normal (BezierElement::orientation is left to the caller). sums holds batch.size entries. Sum factorisation: for
 /// n x n points and degree p about 2 (p + 1) multiply-adds a coordinate and point, whatever the number of elements.
 /// Compiled for two instruction sets, chosen at run time; the sums of an element do not depend on its lane.

@@ -13,9 +13,10 @@ struct Rule {
   int size() const { return static_cast<int>(nodes.size()); }
 };
 
-/// Of a rule that is asked for (Options::fixed_points), and of those with one and two points more that judge it.
+/// Of a rule that is asked for (Options::fixed_points).
 inline constexpr int max_fixed_points = 128;
-inline constexpr int max_gauss_points = max_fixed_points + 2;
+/// Two points more for the rules that judge it, and twice as many for cut elements.
+inline constexpr int max_gauss_points = 2 * (max_fixed_points + 2);
 
 /// The n-point Gauss-Legendre rule on [0, 1], nodes increasing and symmetric; exact for degree 2 n - 1. Nodes and
 /// weights are correct to the last bit or two (Newton's method on the three-term recurrence in extended precision).

@@ -76,6 +76,8 @@ class FunctionEvaluator {
     return noise;
   }
 
+  Values magnitude(const ElementPiece<Dim>&, const Values& value) const { return value.abs(); }
+
   template <class AnyOrders>
   void clear_exact(const ElementPiece<Dim>&, const AnyOrders&, Values&) const {}
 
@@ -137,13 +139,21 @@ class BoundaryEvaluator : public FunctionEvaluator<Dim> {
     static thread_local PieceSamples<Dim> samples;
     static thread_local std::vector<double> weights;
     sample_piece(*pieces.front(), orders, samples);
-    weights.resize(static_cast<std::size_t>(samples.normals.cols()));
-    for (Eigen::Index i = 0; i < samples.normals.cols(); ++i) {
-      const double measure = samples.normals.col(i).norm();
-      weights[static_cast<std::size_t>(i)] = measure;
-      if (measure > 0.0) samples.normals.col(i) /= measure;
+    static thread_local std::vector<double> scales;
+    weights.resize(samples.weights.size());
+    scales.resize(samples.weights.size());
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      auto normal = samples.normals.col(static_cast<Eigen::Index>(i));
+      const double measure = normal.norm();
+      weights[i] = samples.weights[i] * measure;
+      scales[i] = std::abs(weights[i]);
+      if (measure > 0.0) normal /= measure;
     }
-    values.front() = this->weighted_sum(samples.points, samples.normals, weights, weights);
+    values.front() = this->weighted_sum(samples.points, samples.normals, weights, scales);
+  }
+
+  std::int64_t points(const Piece& piece, const Orders<directions>& orders) const {
+    return points_of_rule(piece, orders);
   }
 
   std::pair<Piece, Piece> split(const Piece& piece, int direction) const { return bisect(piece, direction); }
@@ -198,12 +208,19 @@ class ConeEvaluator : public FunctionEvaluator<Dim> {
         const geometry::Vector<Dim> d = samples.points.col(i) - pole_;
         const Eigen::Index point = k * rays + i;
         points.col(point) = pole_ + t * d;
-        weights[static_cast<std::size_t>(point)] = radial_weight * d.dot(samples.normals.col(i));
-        scales[static_cast<std::size_t>(point)] = radial_weight * d.norm() * samples.normals.col(i).norm();
+        const double weight = radial_weight * samples.weights[static_cast<std::size_t>(i)];
+        weights[static_cast<std::size_t>(point)] = weight * d.dot(samples.normals.col(i));
+        scales[static_cast<std::size_t>(point)] = std::abs(weight) * d.norm() * samples.normals.col(i).norm();
       }
     }
     static const geometry::Points<Dim> no_normals(Dim, 0);
     values.front() = this->weighted_sum(points, no_normals, weights, scales);
+  }
+
+  std::int64_t points(const Piece& piece, const Orders<directions>& orders) const {
+    Orders<Dim - 1> on_element;
+    std::copy_n(orders.begin(), Dim - 1, on_element.begin());
+    return orders[Dim - 1] * points_of_rule<Dim>(piece, on_element);
   }
 
   std::pair<Piece, Piece> split(const Piece& piece, int direction) const {
@@ -275,7 +292,8 @@ class Integration {
       const Evaluator<Dim> evaluator(integrand_of(thread), pole_, count, target, options_.tolerance);
       std::vector<typename Evaluator<Dim>::Piece> pieces;
       for (std::size_t e = task * elements_per_task; e < std::min(count, (task + 1) * elements_per_task); ++e) {
-        pieces.push_back(Evaluator<Dim>::make_piece(whole_element(table_, table_.elements[e])));
+        ElementPiece<Dim> piece = whole_element(table_, table_.elements[e]);
+        if (!piece.empty()) pieces.push_back(Evaluator<Dim>::make_piece(std::move(piece)));
       }
       AdaptiveIntegrator<Evaluator<Dim>> integrator(evaluator, options_, bisection_share(options_, tasks));
       totals[task] = step(integrator, std::move(pieces));

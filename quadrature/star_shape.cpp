@@ -11,6 +11,21 @@ namespace isorim::quadrature {
 
 namespace {
 
+/// Some points of a piece, of a cut one only such as are kept.
+template <int Dim>
+void sample_kept_part(const ElementPiece<Dim>& piece, PieceSamples<Dim>& samples) {
+  constexpr int rows = 5;
+  Orders<Dim - 1> orders;
+  for (std::size_t d = 0; d < Dim - 1; ++d) orders[d] = piece.element->degree[d] == 1 ? 2 : rows;
+  if constexpr (Dim == 3) {
+    if (piece.is_cut()) {
+      samples = sample_at(piece, piece.region->inner_points(rows));
+      return;
+    }
+  }
+  sample_piece(piece, orders, samples);
+}
+
 /// Points of the boundary with their outward unit normals: the tangent half-spaces whose intersection is the kernel,
 /// the set of poles from which the whole boundary is seen.
 template <int Dim>
@@ -22,10 +37,7 @@ PieceSamples<Dim> tangent_planes(const geometry::ElementTable<Dim>& table, std::
   std::vector<double> points;
   std::vector<double> normals;
   for (std::size_t e = 0; e < table.elements.size(); e += stride) {
-    const ElementPiece<Dim> piece = whole_element(table, table.elements[e]);
-    Orders<Dim - 1> orders;
-    for (std::size_t d = 0; d < Dim - 1; ++d) orders[d] = piece.element->degree[d] == 1 ? 2 : 5;
-    sample_piece(piece, orders, samples);
+    sample_kept_part(whole_element(table, table.elements[e]), samples);
     for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
       const double length = samples.normals.col(i).norm();
       if (length <= 0.0) continue;

@@ -127,6 +127,7 @@ GeometricProperties<Dim> geometric_properties(const geometry::ElementTable<Dim>&
   result.boundary_status =
       quadrature::judge(result.boundary_measure.error, options.integration.tolerance * result.boundary_measure.value,
                         sums.rounding[Layout::measure], options.integration);
+  if (sums.exact_measure && result.boundary_status == Status::converged) result.boundary_status = Status::exact;
   if (with_domain) {
     result.domain = domain_properties<Dim>(sums, pole);
     const geometry::Vector<Dim> offset = result.domain->centroid - pole;

@@ -25,7 +25,7 @@ ElementSums<Dim> plain_sums(const geometry::ElementTable<Dim>& table, std::size_
   ElementSums<Dim> sums = ElementSums<Dim>::Zero();
   for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
     const geometry::Vector<Dim> d = samples.points.col(i) - pole;
-    const geometry::Vector<Dim> n = samples.normals.col(i);
+    const geometry::Vector<Dim> n = samples.weights[static_cast<std::size_t>(i)] * samples.normals.col(i);
     sums[Layout::measure] += n.norm();
     sums[Layout::content] += d.dot(n);
     for (int k = 0; k < Dim; ++k) {
