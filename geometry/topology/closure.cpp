@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -19,21 +22,30 @@ std::string at(const Point<Dim>& point) {
   return "(" + text + ")";
 }
 
-/// How far one stretch is from another, end from end.
-template <int Dim>
-double gap(const FreeEdge<Dim>& a, const FreeEdge<Dim>& b) {
-  const double along = std::max((a.from - b.from).norm(), (a.to - b.to).norm());
-  const double against = std::max((a.from - b.to).norm(), (a.to - b.from).norm());
-  return std::min(along, against);
+/// The free end nearest to another one, and how far; -1 if there is no other.
+std::pair<int, double> nearest(const std::vector<FreeEdge<2>>& ends, std::size_t own) {
+  std::pair<int, double> best{-1, std::numeric_limits<double>::infinity()};
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    const double distance = (ends[k].from - ends[own].from).norm();
+    if (k != own && distance < best.second) best = {static_cast<int>(k), distance};
+  }
+  return best;
 }
 
-std::string describe(const FreeEdge<2>& edge) {
+std::pair<int, double> nearest(const std::vector<FreeEdge<3>>& edges, std::size_t own) {
+  return {edges[own].nearest, edges[own].gap};
+}
+
+std::string describe(const Patch<2>& /*patch*/, const FreeEdge<2>& edge) {
   return fmt::format("{} at {}", edge.side == 0 ? "starts" : "ends", at<2>(edge.from));
 }
 
-std::string describe(const FreeEdge<3>& edge) {
+std::string describe(const Patch<3>& patch, const FreeEdge<3>& edge) {
   constexpr const char* sides[] = {"first v", "last u", "last v", "first u"};
-  return fmt::format("has a free edge (at its {}) from {} to {}", sides[edge.side], at<3>(edge.from), at<3>(edge.to));
+  const std::string where = std::holds_alternative<TrimmedSurface>(patch.shape)
+                                ? fmt::format("in curve {} of loop {}", edge.curve + 1, edge.loop + 1)
+                                : fmt::format("at its {}", sides[edge.curve]);
+  return fmt::format("has a free edge ({}) from {} to {}", where, at<3>(edge.from), at<3>(edge.to));
 }
 
 }  // namespace
@@ -42,24 +54,18 @@ template <int Dim>
 void require_closed(const OrientedBoundary<Dim>& oriented) {
   const std::vector<FreeEdge<Dim>>& edges = oriented.topology.free_edges;
   if (oriented.topology.closed) return;
-  const auto name = [&](const FreeEdge<Dim>& edge) {
-    return oriented.boundary.patches[static_cast<std::size_t>(edge.patch)].name;
+  const auto patch = [&](const FreeEdge<Dim>& edge) -> const Patch<Dim>& {
+    return oriented.boundary.patches[static_cast<std::size_t>(edge.patch)];
   };
   constexpr std::size_t most = 5;
   std::string text = "the boundary is not closed: ";
   for (std::size_t i = 0; i < std::min(edges.size(), most); ++i) {
-    text += fmt::format("{}'{}' {}", i == 0 ? "" : "; ", name(edges[i]), describe(edges[i]));
-    std::size_t nearest = edges.size();
-    double distance = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < edges.size(); ++k) {
-      if (k == i || gap(edges[i], edges[k]) >= distance) continue;
-      nearest = k;
-      distance = gap(edges[i], edges[k]);
-    }
-    if (nearest < edges.size()) {
-      text += fmt::format(", a gap of {:.3g} to '{}' (tolerance {:.3g})", distance, name(edges[nearest]),
-                          oriented.topology.tolerance);
-    }
+    const Patch<Dim>& own = patch(edges[i]);
+    text += fmt::format("{}'{}' {}", i == 0 ? "" : "; ", own.name, describe(own, edges[i]));
+    const auto [other, distance] = nearest(edges, i);
+    if (other < 0) continue;
+    text += fmt::format(", a gap of {:.3g} to '{}' (tolerance {:.3g})", distance,
+                        patch(edges[static_cast<std::size_t>(other)]).name, oriented.topology.tolerance);
   }
   if (edges.size() > most) text += fmt::format("; and {} more", edges.size() - most);
   throw GeometryError(text);

@@ -3,16 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
-#include "geometry/nurbs/surface.h"
+#include "geometry/topology/duplicate_faces.h"
+#include "geometry/topology/edge_curve.h"
+#include "geometry/topology/edge_fan.h"
 #include "geometry/topology/point_clusters.h"
+#include "geometry/topology/point_tree.h"
+#include "geometry/topology/signed_components.h"
 
 namespace isorim::geometry {
 namespace {
@@ -21,226 +28,559 @@ std::string at(const Point3& point) {
   return fmt::format("({:.9g}, {:.9g}, {:.9g})", point.x(), point.y(), point.z());
 }
 
-/// Points in boxes, by a regular grid of about one cell a point.
-class PointGrid {
- public:
-  explicit PointGrid(const PointClusters<3>& points) : points_(points) {
-    lower_ = upper_ = points[0];
-    for (int i = 1; i < points.size(); ++i) {
-      lower_ = lower_.cwiseMin(points[i]);
-      upper_ = upper_.cwiseMax(points[i]);
-    }
-    const double longest = std::max((upper_ - lower_).maxCoeff(), 1e-300);
-    // Points on a surface fill about n^2 of the n^3 cells.
-    const double per_axis = std::clamp(std::sqrt(static_cast<double>(points.size())), 1.0, 64.0);
-    size_ = longest / per_axis;
-    for (int i = 0; i < 3; ++i) counts_[i] = cell(upper_, i, 1 << 20) + 1;
-    cells_.resize(static_cast<std::size_t>(counts_[0]) * counts_[1] * counts_[2]);
-    for (int i = 0; i < points.size(); ++i) {
-      cells_[index(cell(points[i], 0, counts_[0] - 1), cell(points[i], 1, counts_[1] - 1),
-                   cell(points[i], 2, counts_[2] - 1))]
-          .push_back(i);
-    }
-  }
+std::size_t slot(int index) {
+  return static_cast<std::size_t>(index);
+}
 
-  template <typename Visit>
-  void for_each_in_box(const Point3& lower, const Point3& upper, const Visit& visit) const {
-    std::array<int, 3> low{};
-    std::array<int, 3> high{};
-    for (int i = 0; i < 3; ++i) {
-      low[i] = cell(lower, i, counts_[i] - 1);
-      high[i] = cell(upper, i, counts_[i] - 1);
-    }
-    for (int z = low[2]; z <= high[2]; ++z) {
-      for (int y = low[1]; y <= high[1]; ++y) {
-        for (int x = low[0]; x <= high[0]; ++x) {
-          for (const int point : cells_[index(x, y, z)]) {
-            const bool inside =
-                (points_[point].array() >= lower.array()).all() && (points_[point].array() <= upper.array()).all();
-            if (inside) visit(point);
-          }
-        }
-      }
-    }
+/// An edge with its curve, whose surface belongs to the boundary.
+struct Edge {
+  SurfaceEdge data;
+  EdgeCurve curve;
+  double loop_length = 0.0;
+
+  /// What limits how far vertices at it may move.
+  double scale() const { return std::max(data.length, 0.02 * loop_length); }
+};
+
+struct Piece {
+  EdgePiece data;
+  /// The whole edge.
+  bool whole = true;
+  enum class State { open, joined, gone } state = State::open;
+};
+
+/// Vertices that become one in the course of the matching.
+class Vertices {
+ public:
+  int add(const Point3& point) {
+    points_.push_back(point);
+    parents_.push_back(static_cast<int>(parents_.size()));
+    scales_.push_back(std::numeric_limits<double>::infinity());
+    pieces_.emplace_back();
+    return parents_.back();
+  }
+  int root(int vertex) const {
+    while (parents_[slot(vertex)] != vertex) vertex = parents_[slot(vertex)];
+    return vertex;
+  }
+  /// Of a root: its place, the shortest scale of its edges, the pieces that end there.
+  const Point3& point(int root) const { return points_[slot(root)]; }
+  double& scale(int root) { return scales_[slot(root)]; }
+  std::vector<int>& pieces(int root) { return pieces_[slot(root)]; }
+
+  void unite(int a, int b) {
+    if (b < a) std::swap(a, b);
+    parents_[slot(b)] = a;
+    scale(a) = std::min(scale(a), scale(b));
+    pieces(a).insert(pieces(a).end(), pieces(b).begin(), pieces(b).end());
+    pieces(b).clear();
   }
 
  private:
-  int cell(const Point3& point, int axis, int last) const {
-    return static_cast<int>(
-        std::clamp(std::floor((point(axis) - lower_(axis)) / size_), 0.0, static_cast<double>(last)));
-  }
-  std::size_t index(int x, int y, int z) const {
-    return static_cast<std::size_t>(x) + static_cast<std::size_t>(counts_[0]) * (y + counts_[1] * z);
-  }
-
-  const PointClusters<3>& points_;
-  Point3 lower_;
-  Point3 upper_;
-  double size_ = 1.0;
-  std::array<int, 3> counts_{};
-  std::vector<std::vector<int>> cells_;
+  std::vector<Point3> points_;
+  std::vector<int> parents_;
+  std::vector<double> scales_;
+  std::vector<std::vector<int>> pieces_;
 };
 
-std::vector<SurfaceEdge> find_edges(const Boundary<3>& boundary, double tolerance) {
-  // Counter-clockwise about the rectangle: along v = first, up u = last, back along v = last, down u = first.
-  constexpr std::array<int, 4> direction{1, 1, -1, -1};
-  std::vector<SurfaceEdge> edges;
+std::vector<Edge> find_edges(const Boundary<3>& boundary, double tolerance) {
+  std::vector<Edge> edges;
   for (std::size_t i = 0; i < boundary.patches.size(); ++i) {
-    std::array<NurbsCurve<3>, 4> curves = boundary_curves(surface_of(boundary.patches[i].shape));
-    for (std::size_t side = 0; side < 4; ++side) {
-      const Points<3> points = curves[side].control_points();
-      const Point3 lower = points.rowwise().minCoeff();
-      const Point3 upper = points.rowwise().maxCoeff();
-      if ((upper - lower).norm() <= tolerance) continue;
-      edges.push_back(
-          {static_cast<int>(i), static_cast<int>(side), std::move(curves[side]), direction[side], lower, upper, 0, 0});
+    const std::vector<TrimLoop> loops = trim_loops(boundary.patches[i].shape);
+    for (std::size_t k = 0; k < loops.size(); ++k) {
+      const std::size_t first = edges.size();
+      double loop_length = 0.0;
+      for (std::size_t c = 0; c < loops[k].curves.size(); ++c) {
+        EdgeCurve curve(surface_of(boundary.patches[i].shape), loops[k].curves[c]);
+        if (curve.diagonal() <= tolerance) continue;
+        const double length = curve.length();
+        loop_length += length;
+        edges.push_back(
+            {{static_cast<int>(i), static_cast<int>(k), static_cast<int>(c), length}, std::move(curve), 0.0});
+      }
+      for (std::size_t e = first; e < edges.size(); ++e) edges[e].loop_length = loop_length;
     }
   }
   return edges;
 }
 
-/// The part of the matching that knows the tolerance and the edges.
+/// The matching in levels of a growing distance.
 class Matcher {
  public:
-  Matcher(const Boundary<3>& boundary, double tolerance)
-      : boundary_(boundary), tolerance_(tolerance), vertices_(tolerance) {
-    result_.edges = find_edges(boundary, tolerance);
+  Matcher(const Boundary<3>& boundary, const MatchingOptions& options)
+      : boundary_(boundary), options_(options), finest_(finest_tolerance(boundary, options.tolerance)) {
+    edges_ = find_edges(boundary, finest_);
   }
 
   EdgeMatching run() {
-    if (result_.edges.empty()) return std::move(result_);
-    for (SurfaceEdge& edge : result_.edges) {
-      edge.from = vertices_.add(evaluate(edge.curve, edge.curve.domain().first));
-      edge.to = vertices_.add(evaluate(edge.curve, edge.curve.domain().last));
+    if (edges_.empty()) return {};
+    find_vertices();
+    join_shared_edges();
+    double tolerance = finest_;
+    run_level(tolerance);
+    while (tolerance < options_.tolerance && !open_pieces().empty()) {
+      tolerance = std::min(10.0 * tolerance, options_.tolerance);
+      run_level(tolerance);
     }
-    result_.largest_gap = vertices_.largest_distance();
-    const PointGrid grid(vertices_);
-    for (std::size_t i = 0; i < result_.edges.size(); ++i) split_at_vertices(static_cast<int>(i), grid);
-    join_pieces();
-    return std::move(result_);
+    resolve_fans();
+    tolerance = options_.tolerance;
+    while (tolerance < options_.largest_gap && !open_pieces().empty()) {
+      tolerance = std::min(2.0 * tolerance, options_.largest_gap);
+      run_level(tolerance);
+    }
+    return result();
   }
 
  private:
-  const SurfaceEdge& edge_of(const EdgePiece& piece) const {
-    return result_.edges[static_cast<std::size_t>(piece.edge)];
-  }
-  const EdgePiece& piece(int index) const { return result_.pieces[static_cast<std::size_t>(index)]; }
-  const std::string& patch_name(int index) const {
-    return boundary_.patches[static_cast<std::size_t>(edge_of(piece(index)).patch)].name;
+  static double finest_tolerance(const Boundary<3>& boundary, double tolerance) {
+    double farthest = 0.0;
+    for (const Patch<3>& patch : boundary.patches) {
+      const HomogeneousPoints<3>& net = surface_of(patch.shape).homogeneous();
+      for (Eigen::Index i = 0; i < net.cols(); ++i)
+        farthest = std::max(farthest, net.col(i).head<3>().cwiseAbs().maxCoeff() / net(3, i));
+    }
+    const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * farthest;
+    return std::min(tolerance, std::max(1e-3 * tolerance, rounding));
   }
 
-  void split_at_vertices(int index, const PointGrid& grid) {
-    const SurfaceEdge& edge = result_.edges[static_cast<std::size_t>(index)];
-    const Interval domain = edge.curve.domain();
-    std::vector<std::pair<double, int>> stops{{domain.first, edge.from}, {domain.last, edge.to}};
-    const Vector3 margin = Vector3::Constant(tolerance_);
-    grid.for_each_in_box(edge.lower - margin, edge.upper + margin, [&](int vertex) {
-      if (vertex == edge.from || vertex == edge.to) return;
-      const ClosestCurvePoint<3> foot = closest_point(edge.curve, vertices_[vertex]);
-      if (foot.distance > tolerance_) return;
-      result_.largest_gap = std::max(result_.largest_gap, foot.distance);
-      stops.emplace_back(foot.u, vertex);
+  // --- Pieces and vertices ----------------------------------------------------------------------------------------
+
+  const Edge& edge_of(const Piece& piece) const { return edges_[slot(piece.data.edge)]; }
+  int patch_of(int piece) const { return edge_of(pieces_[slot(piece)]).data.patch; }
+  const std::string& patch_name(int piece) const { return boundary_.patches[slot(patch_of(piece))].name; }
+  int from(const Piece& piece) const { return vertices_.root(piece.data.from); }
+  int to(const Piece& piece) const { return vertices_.root(piece.data.to); }
+
+  std::vector<int> open_pieces() const {
+    std::vector<int> open;
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+      if (pieces_[i].state == Piece::State::open) open.push_back(static_cast<int>(i));
+    return open;
+  }
+
+  int add_piece(const Piece& piece) {
+    const int index = static_cast<int>(pieces_.size());
+    pieces_.push_back(piece);
+    for (const int vertex : {piece.data.from, piece.data.to}) vertices_.pieces(vertices_.root(vertex)).push_back(index);
+    return index;
+  }
+
+  void find_vertices() {
+    PointClusters<3> clusters(finest_);
+    const auto vertex_at = [&](const Point3& point) {
+      const int known = clusters.size();
+      const int cluster = clusters.add(point);
+      return cluster < known ? cluster : vertices_.add(point);
+    };
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      const Interval domain = edges_[i].curve.domain();
+      const int first = vertex_at(edges_[i].curve.at(domain.first));
+      const int last = vertex_at(edges_[i].curve.at(domain.last));
+      for (const int vertex : {first, last})
+        vertices_.scale(vertex) = std::min(vertices_.scale(vertex), edges_[i].scale());
+      add_piece({{static_cast<int>(i), domain, first, last, edges_[i].data.length}});
+    }
+  }
+
+  /// The roots at which the pieces end.
+  std::vector<int> end_vertices(const std::vector<int>& pieces) const {
+    std::vector<int> roots;
+    for (const int piece : pieces) {
+      roots.push_back(from(pieces_[slot(piece)]));
+      roots.push_back(to(pieces_[slot(piece)]));
+    }
+    std::ranges::sort(roots);
+    roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+    return roots;
+  }
+
+  PointTree tree_of(const std::vector<int>& roots) const {
+    std::vector<Point3> points;
+    for (const int root : roots) points.push_back(vertices_.point(root));
+    return PointTree(std::move(points));
+  }
+
+  /// How far a level may move things whose smallest extent is `scale`.
+  double bounded(double tolerance, double scale) const { return std::max(finest_, std::min(tolerance, 0.1 * scale)); }
+
+  // --- One level --------------------------------------------------------------------------------------------------
+
+  void run_level(double tolerance) {
+    tolerance_ = tolerance;
+    if (tolerance > finest_) merge_vertices();
+    split_pieces();
+    drop_collapsed();
+    for (const std::vector<int>& group : coincident_groups()) {
+      if (group.size() == 2) join(group[0], group[1]);
+    }
+  }
+
+  void merge_vertices() {
+    const std::vector<int> roots = end_vertices(open_pieces());
+    const PointTree tree = tree_of(roots);
+    std::vector<std::tuple<double, int, int>> pairs;
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      const double reach = bounded(tolerance_, vertices_.scale(roots[i]));
+      const Vector3 margin = Vector3::Constant(reach);
+      const Point3& point = tree[static_cast<int>(i)];
+      tree.for_each_in_box(point - margin, point + margin, [&](int k) {
+        if (static_cast<std::size_t>(k) <= i) return;
+        const double distance = (tree[k] - point).norm();
+        if (distance <= std::min(reach, bounded(tolerance_, vertices_.scale(roots[slot(k)]))))
+          pairs.emplace_back(distance, roots[i], roots[slot(k)]);
+      });
+    }
+    std::ranges::sort(pairs);
+    for (const auto& [distance, a, b] : pairs) {
+      const int first = vertices_.root(a);
+      const int second = vertices_.root(b);
+      if (first == second || (vertices_.point(first) - vertices_.point(second)).norm() > tolerance_) continue;
+      if (!would_collapse(first, second, distance)) vertices_.unite(first, second);
+    }
+  }
+
+  /// Whether a piece between the two vertices is all that keeps them apart: one that is joined, or a whole edge that is
+  /// no mere bridge.
+  bool would_collapse(int first, int second, double distance) {
+    if (vertices_.pieces(second).size() < vertices_.pieces(first).size()) std::swap(first, second);
+    return std::ranges::any_of(vertices_.pieces(first), [&](int index) {
+      const Piece& piece = pieces_[slot(index)];
+      const bool between =
+          (from(piece) == first && to(piece) == second) || (from(piece) == second && to(piece) == first);
+      if (!between || piece.state == Piece::State::gone || piece.data.length > 8.0 * distance) return false;
+      return piece.state == Piece::State::joined || (piece.whole && piece.data.length > tolerance_);
     });
+  }
+
+  void split_pieces() {
+    const std::vector<int> open = open_pieces();
+    const std::vector<int> roots = end_vertices(open);
+    const PointTree tree = tree_of(roots);
+    std::vector<int> near;
+    for (const int index : open) {
+      const Piece& piece = pieces_[slot(index)];
+      const Edge& edge = edge_of(piece);
+      const double reach = bounded(tolerance_, edge.data.length);
+      near.clear();
+      for (const EdgeCurve::Box& box : edge.curve.boxes(piece.data.domain)) {
+        const Vector3 margin = Vector3::Constant(reach);
+        tree.for_each_in_box(box.lower - margin, box.upper + margin, [&](int k) { near.push_back(roots[slot(k)]); });
+      }
+      std::ranges::sort(near);
+      near.erase(std::unique(near.begin(), near.end()), near.end());
+      split(index, near, reach);
+    }
+  }
+
+  /// Cuts a piece where it passes the vertices, except beside its own ends (whose turn it is to become one with them).
+  void split(int index, const std::vector<int>& near, double reach) {
+    const EdgePiece whole = pieces_[slot(index)].data;
+    const EdgeCurve& curve = edge_of(pieces_[slot(index)]).curve;
+    const std::array<Point3, 2> ends{curve.at(whole.domain.first), curve.at(whole.domain.last)};
+    std::vector<std::pair<double, int>> stops;
+    for (const int vertex : near) {
+      const double limit = std::min(reach, bounded(tolerance_, vertices_.scale(vertex)));
+      // Most vertices near an edge are its own ends.
+      if ((vertex == from(pieces_[slot(index)]) || vertex == to(pieces_[slot(index)])) && passes_once(curve, whole))
+        continue;
+      for (const EdgeCurve::Foot& foot : curve.feet(vertices_.point(vertex), whole.domain, limit)) {
+        const Point3 place = curve.at(foot.t);
+        if ((place - ends[0]).norm() > limit && (place - ends[1]).norm() > limit) stops.emplace_back(foot.t, vertex);
+      }
+    }
+    if (stops.empty()) return;
     std::ranges::sort(stops);
-    for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
-      result_.pieces.push_back({index, {stops[i].first, stops[i + 1].first}, stops[i].second, stops[i + 1].second});
+    cut_at(index, stops);
+  }
+
+  /// A straight edge cannot come back to its ends.
+  static bool passes_once(const EdgeCurve& curve, const EdgePiece& piece) { return curve.leg_count(piece.domain) == 1; }
+
+  void cut_at(int index, const std::vector<std::pair<double, int>>& stops) {
+    const EdgePiece whole = pieces_[slot(index)].data;
+    const EdgeCurve& curve = edge_of(pieces_[slot(index)]).curve;
+    pieces_[slot(index)].state = Piece::State::gone;
+    EdgePiece rest = whole;
+    Point3 previous = curve.at(whole.domain.first);
+    for (const auto& [t, vertex] : stops) {
+      const Point3 place = curve.at(t);
+      // Vertices on two sides of the edge: the next level's.
+      if ((place - previous).norm() <= 0.5 * finest_) continue;
+      EdgePiece part = rest;
+      part.domain.last = t;
+      part.to = vertex;
+      part.length = curve.length(part.domain);
+      add_piece({part, false});
+      rest.domain.first = t;
+      rest.from = vertex;
+      previous = place;
+    }
+    rest.length = curve.length(rest.domain);
+    add_piece({rest, false});
+  }
+
+  /// Bridges of gaps and slivers beside T-junctions, once their ends are one vertex.
+  void drop_collapsed() {
+    for (Piece& piece : pieces_) {
+      if (piece.state != Piece::State::open || from(piece) != to(piece)) continue;
+      const bool fills_loop = piece.data.length > 0.5 * edge_of(piece).loop_length;
+      if (piece.data.length > 4.0 * tolerance_ || fills_loop) continue;
+      piece.state = Piece::State::gone;
+      record_gap(piece.data.length, edge_of(piece).curve.at(piece.data.domain.middle()));
     }
   }
 
-  Point3 point_at(const EdgePiece& piece, double fraction) const {
-    return evaluate(edge_of(piece).curve, piece.domain.first + fraction * piece.domain.length());
+  void record_gap(double gap, const Point3& place) {
+    if (gap <= largest_gap_) return;
+    largest_gap_ = gap;
+    largest_gap_place_ = place;
   }
 
-  /// Where the point lies on the piece, as a fraction, if it does.
-  std::optional<double> fraction_on(const EdgePiece& piece, const Point3& point, double& gap) const {
-    const ClosestCurvePoint<3> foot = closest_point(edge_of(piece).curve, point);
-    if (foot.distance > tolerance_) return std::nullopt;
-    const double fraction = (foot.u - piece.domain.first) / piece.domain.length();
-    // A neighbouring piece of the same edge may touch at the shared vertex only.
-    if (fraction < -1e-6 || fraction > 1.0 + 1e-6) return std::nullopt;
-    gap = std::max(gap, foot.distance);
-    return fraction;
-  }
-
-  /// How far apart the pieces are at equal (or mirrored) fractions.
-  double distance_at_fractions(const EdgePiece& a, const EdgePiece& b, bool mirrored) const {
-    double distance = 0.0;
-    for (const double f : {0.25, 0.5, 0.75}) {
-      distance = std::max(distance, (point_at(a, f) - point_at(b, mirrored ? 1.0 - f : f)).norm());
-    }
-    return distance;
-  }
+  // --- Coincidence ------------------------------------------------------------------------------------------------
 
   struct Coincidence {
     bool same_direction = false;
     double gap = 0.0;
+    Point3 place = Point3::Zero();
   };
-  /// Whether two pieces between the same vertices run along each other.
-  std::optional<Coincidence> coincide(const EdgePiece& a, const EdgePiece& b) const {
-    const bool distinct_ends = a.from != a.to;
-    for (const bool same : {true, false}) {
-      if (distinct_ends && same != (a.from == b.from)) continue;
-      const double distance = distance_at_fractions(a, b, !same);
-      if (distance <= tolerance_) return Coincidence{same, distance};
+
+  /// The largest distance of points of `a` from `b`; false if one is farther than the tolerance (twice that at the
+  /// ends, which may lie on both sides of their vertex).
+  bool runs_along(const Piece& a, const Piece& b, double tolerance, Coincidence& found) const {
+    const EdgeCurve& curve = edge_of(a).curve;
+    const EdgeCurve& other = edge_of(b).curve;
+    const Interval domain = a.data.domain;
+    const int steps = std::clamp(2 * curve.leg_count(domain), 4, 24);
+    for (int i = 0; i <= steps; ++i) {
+      const double t = i == steps ? domain.last : domain.first + domain.length() * i / steps;
+      const Point3 point = curve.at(t);
+      const double limit = i == 0 || i == steps ? 2.0 * tolerance : tolerance;
+      const std::optional<EdgeCurve::Foot> foot = other.nearest(point, b.data.domain, limit);
+      if (!foot) return false;
+      if (foot->distance < found.gap) continue;
+      found.gap = foot->distance;
+      found.place = point;
     }
-    // The same curve may be run through at another pace.
-    Coincidence result;
-    std::array<double, 3> fractions{};
-    std::size_t next = 0;
-    for (const double f : {0.25, 0.5, 0.75}) {
-      const std::optional<double> fraction = fraction_on(b, point_at(a, f), result.gap);
-      if (!fraction) return std::nullopt;
-      fractions[next++] = *fraction;
-    }
-    result.same_direction = distinct_ends ? a.from == b.from : fractions[0] < fractions[2];
-    return result;
+    return true;
   }
 
-  void join_pieces() {
-    std::map<std::pair<int, int>, std::vector<int>> by_ends;
-    for (std::size_t i = 0; i < result_.pieces.size(); ++i) {
-      const EdgePiece& own = result_.pieces[i];
-      by_ends[std::minmax(own.from, own.to)].push_back(static_cast<int>(i));
+  /// Whether two pieces run along each other, whatever their ends.
+  std::optional<Coincidence> coincide(const Piece& a, const Piece& b, double tolerance) const {
+    std::array<double, 3> feet{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double t = a.data.domain.first + a.data.domain.length() * (0.25 + 0.25 * static_cast<double>(i));
+      const std::optional<EdgeCurve::Foot> foot =
+          edge_of(b).curve.nearest(edge_of(a).curve.at(t), b.data.domain, tolerance);
+      if (!foot) return std::nullopt;
+      feet[i] = foot->t;
     }
-    std::vector<int> partner(result_.pieces.size(), -1);
-    for (const auto& [ends, candidates] : by_ends) {
-      for (std::size_t i = 0; i < candidates.size(); ++i) {
-        for (std::size_t k = i + 1; k < candidates.size(); ++k) join(candidates[i], candidates[k], partner);
+    Coincidence found;
+    found.same_direction = feet[0] < feet[2];
+    if (!runs_along(a, b, tolerance, found) || !runs_along(b, a, tolerance, found)) return std::nullopt;
+    return found;
+  }
+
+  double reach_of(const Piece& a, const Piece& b) const {
+    return std::max(finest_, std::min(tolerance_, 0.25 * std::min(a.data.length, b.data.length)));
+  }
+
+  /// Open pieces that coincide at this level, in groups of two and more.
+  std::vector<std::vector<int>> coincident_groups() const {
+    std::vector<std::tuple<int, int, int>> by_ends;
+    for (const int index : open_pieces()) {
+      const auto [low, high] = std::minmax({from(pieces_[slot(index)]), to(pieces_[slot(index)])});
+      by_ends.emplace_back(low, high, index);
+    }
+    std::ranges::sort(by_ends);
+    std::vector<std::vector<int>> groups;
+    std::vector<int> candidates;
+    for (std::size_t i = 0; i < by_ends.size(); ++i) {
+      const auto& [low, high, index] = by_ends[i];
+      candidates.push_back(index);
+      const bool last =
+          i + 1 == by_ends.size() || std::get<0>(by_ends[i + 1]) != low || std::get<1>(by_ends[i + 1]) != high;
+      if (!last) continue;
+      append_groups(candidates, groups);
+      candidates.clear();
+    }
+    return groups;
+  }
+
+  /// Splits pieces between the same vertices into those that run along each other.
+  void append_groups(std::vector<int> candidates, std::vector<std::vector<int>>& groups) const {
+    while (candidates.size() > 1) {
+      std::vector<int> group{candidates.back()};
+      candidates.pop_back();
+      for (std::size_t next = 0; next < group.size(); ++next) {
+        const Piece& own = pieces_[slot(group[next])];
+        const auto apart = [&](int other) {
+          return !coincide(own, pieces_[slot(other)], reach_of(own, pieces_[slot(other)]));
+        };
+        const auto joined = std::stable_partition(candidates.begin(), candidates.end(), apart);
+        group.insert(group.end(), joined, candidates.end());
+        candidates.erase(joined, candidates.end());
+      }
+      std::ranges::sort(group);
+      if (group.size() > 1) groups.push_back(std::move(group));
+    }
+  }
+
+  void join(int a, int b) {
+    Piece& first = pieces_[slot(a)];
+    Piece& second = pieces_[slot(b)];
+    const std::optional<Coincidence> found = coincide(first, second, reach_of(first, second));
+    if (!found) return;  // both run along a third
+    join(a, b, *found);
+  }
+
+  void join(int a, int b, const Coincidence& found) {
+    pieces_[slot(a)].state = pieces_[slot(b)].state = Piece::State::joined;
+    joints_.push_back({a, b, found.same_direction, found.gap});
+    record_gap(found.gap, found.place);
+    largest_tolerance_ = std::max(largest_tolerance_, tolerance_);
+  }
+
+  // --- What the file says -----------------------------------------------------------------------------------------
+
+  int shared_edge(const SurfaceEdge& edge) const {
+    const SharedEdges& shared = options_.shared_edges;
+    if (slot(edge.patch) >= shared.size()) return -1;
+    const auto& loops = shared[slot(edge.patch)];
+    if (slot(edge.loop) >= loops.size() || slot(edge.curve) >= loops[slot(edge.loop)].size()) return -1;
+    return loops[slot(edge.loop)][slot(edge.curve)];
+  }
+
+  void join_shared_edges() {
+    std::map<int, std::vector<int>> uses;
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      const int shared = shared_edge(edges_[i].data);
+      if (shared >= 0) uses[shared].push_back(static_cast<int>(i));
+    }
+    for (const auto& [shared, pieces] : uses) {
+      if (pieces.size() == 2) join_shared(pieces[0], pieces[1]);
+    }
+  }
+
+  /// Pieces are whole edges still. Their ends become one, however far apart.
+  void join_shared(int a, int b) {
+    const Piece& first = pieces_[slot(a)];
+    const Piece& second = pieces_[slot(b)];
+    const double tolerance = 0.1 * std::min(first.data.length, second.data.length);
+    const std::optional<Coincidence> found = coincide(first, second, tolerance);
+    if (!found) return;
+    const bool same = found->same_direction;
+    const std::array<std::pair<int, int>, 2> ends{std::pair{first.data.from, same ? second.data.from : second.data.to},
+                                                  std::pair{first.data.to, same ? second.data.to : second.data.from}};
+    for (const auto& [x, y] : ends) {
+      if (vertices_.root(x) != vertices_.root(y)) vertices_.unite(vertices_.root(x), vertices_.root(y));
+    }
+    join(a, b, *found);
+  }
+
+  // --- Edges of more than two patches -----------------------------------------------------------------------------
+
+  void resolve_fans() {
+    std::vector<std::vector<int>> fans = coincident_groups();
+    std::erase_if(fans, [](const std::vector<int>& fan) { return fan.size() == 2; });
+    while (!fans.empty()) {
+      SignedComponents components(static_cast<int>(boundary_.patches.size()));
+      for (const EdgeJoint& joint : joints_)
+        components.unite(patch_of(joint.first), patch_of(joint.second), joint.same_direction ? -1 : 1);
+      const std::size_t resolved = std::erase_if(fans, [&](const std::vector<int>& fan) {
+        const auto pairs = pair_fan(leaves_of(fan, components));
+        if (!pairs) return false;
+        for (const auto& [a, b] : *pairs) join(fan[slot(a)], fan[slot(b)]);
+        return true;
+      });
+      if (resolved == 0) refuse(fans.front());
+    }
+  }
+
+  std::vector<FanLeaf> leaves_of(const std::vector<int>& fan, const SignedComponents& components) const {
+    const Piece& first = pieces_[slot(fan.front())];
+    // Off the middle, where a symmetric surface may have a pole.
+    const Point3 place = edge_of(first).curve.at(first.data.domain.first + 0.4142 * first.data.domain.length());
+    std::vector<FanLeaf> leaves;
+    for (const int index : fan) {
+      const Piece& piece = pieces_[slot(index)];
+      const EdgeCurve& curve = edge_of(piece).curve;
+      const auto foot = curve.nearest(place, piece.data.domain, std::numeric_limits<double>::infinity());
+      const LiftedJet jet = curve.jet(foot->t);
+      const SignedComponents::Member member = components.find(patch_of(index));
+      leaves.push_back(
+          {member.component, member.sign, jet.tangent.normalized(), jet.normal.cross(jet.tangent).normalized()});
+    }
+    return leaves;
+  }
+
+  [[noreturn]] void refuse(const std::vector<int>& fan) const {
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      for (std::size_t k = i + 1; k < fan.size(); ++k) {
+        const Patch<3>& a = boundary_.patches[slot(patch_of(fan[i]))];
+        const Patch<3>& b = boundary_.patches[slot(patch_of(fan[k]))];
+        if (&a != &b && is_same_face(a, b, options_.tolerance))
+          throw GeometryError(fmt::format("patches '{}' and '{}' are the same face, given twice", a.name, b.name));
       }
     }
-    for (std::size_t i = 0; i < partner.size(); ++i) {
-      if (partner[i] < 0) result_.free_pieces.push_back(static_cast<int>(i));
-    }
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < fan.size(); ++i)
+      names.push_back(fmt::format("{}'{}'", i == 0 ? "" : i + 1 == fan.size() ? " and " : ", ", patch_name(fan[i])));
+    std::string list;
+    for (const std::string& name : names) list += name;
+    const Piece& piece = pieces_[slot(fan.front())];
+    throw GeometryError(fmt::format(
+        "patches {} share the edge from {} to {}: an edge joins two patches at most, unless solids touch there", list,
+        at(vertices_.point(from(piece))), at(vertices_.point(to(piece)))));
   }
 
-  void join(int a, int b, std::vector<int>& partner) {
-    const std::optional<Coincidence> found = coincide(piece(a), piece(b));
-    if (!found) return;
-    for (const int own : {a, b}) {
-      const int other = partner[static_cast<std::size_t>(own)];
-      if (other < 0) continue;
-      const int third = own == a ? b : a;
-      throw GeometryError(
-          fmt::format("patches '{}', '{}' and '{}' share the edge from {} to {}: an edge joins two patches at most",
-                      patch_name(own), patch_name(other), patch_name(third), at(vertices_[piece(own).from]),
-                      at(vertices_[piece(own).to])));
+  // --- The result -------------------------------------------------------------------------------------------------
+
+  EdgeMatching result() {
+    EdgeMatching matching;
+    std::map<int, int> vertex_numbers;
+    const auto vertex_number = [&](int root) {
+      const auto [entry, is_new] = vertex_numbers.try_emplace(root, static_cast<int>(matching.vertices.size()));
+      if (is_new) matching.vertices.push_back(vertices_.point(root));
+      return entry->second;
+    };
+    for (const Edge& edge : edges_) matching.edges.push_back(edge.data);
+    std::vector<int> numbers(pieces_.size(), -1);
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      if (pieces_[i].state == Piece::State::gone) continue;
+      numbers[i] = static_cast<int>(matching.pieces.size());
+      if (pieces_[i].state == Piece::State::open) matching.free_pieces.push_back(numbers[i]);
+      EdgePiece piece = pieces_[i].data;
+      piece.from = vertex_number(from(pieces_[i]));
+      piece.to = vertex_number(to(pieces_[i]));
+      matching.pieces.push_back(piece);
     }
-    partner[static_cast<std::size_t>(a)] = b;
-    partner[static_cast<std::size_t>(b)] = a;
-    result_.joints.push_back({a, b, found->same_direction});
-    result_.largest_gap = std::max(result_.largest_gap, found->gap);
+    for (const EdgeJoint& joint : joints_)
+      matching.joints.push_back(
+          {numbers[slot(joint.first)], numbers[slot(joint.second)], joint.same_direction, joint.gap});
+    matching.largest_gap = largest_gap_;
+    matching.largest_gap_place = largest_gap_place_;
+    matching.largest_tolerance = largest_tolerance_;
+    return matching;
   }
 
   const Boundary<3>& boundary_;
-  double tolerance_;
-  PointClusters<3> vertices_;
-  EdgeMatching result_;
+  const MatchingOptions& options_;
+  double finest_;
+  /// Of the present level.
+  double tolerance_ = 0.0;
+  std::vector<Edge> edges_;
+  Vertices vertices_;
+  std::vector<Piece> pieces_;
+  std::vector<EdgeJoint> joints_;
+  double largest_gap_ = 0.0;
+  Point3 largest_gap_place_ = Point3::Zero();
+  double largest_tolerance_ = 0.0;
 };
 
 }  // namespace
 
-EdgeMatching match_edges(const Boundary<3>& boundary, double tolerance) {
-  return Matcher(boundary, tolerance).run();
+EdgeMatching match_edges(const Boundary<3>& boundary, const MatchingOptions& options) {
+  return Matcher(boundary, options).run();
 }
 
 }  // namespace isorim::geometry

@@ -12,13 +12,57 @@ namespace isorim::geometry {
 
 /// A stretch of an edge (Dim = 3) or an end of a curve (Dim = 2) that no other patch continues.
 template <int Dim>
-struct FreeEdge {
+struct FreeEdge;
+
+template <>
+struct FreeEdge<2> {
   int patch = 0;
-  /// Dim = 3: which of the four boundary curves, in the order of boundary_curves(). Dim = 2: 0 start, 1 end.
+  /// 0 start, 1 end.
   int side = 0;
-  /// Ends of the stretch (equal points for Dim = 2).
-  Point<Dim> from;
-  Point<Dim> to;
+  /// Both the free end.
+  Point2 from;
+  Point2 to;
+};
+
+template <>
+struct FreeEdge<3> {
+  int patch = 0;
+  /// Indices into trim_loops(shape) and TrimLoop::curves; for a whole surface `curve` is the side, in the order of
+  /// boundary_curves().
+  int loop = 0;
+  int curve = 0;
+  /// In the parameter of that pcurve.
+  Interval domain;
+  /// Ends of the stretch in the direction of the loop, the kept part on its left.
+  Point3 from = Point3::Zero();
+  Point3 to = Point3::Zero();
+  double length = 0.0;
+  /// The free edge that its middle lies nearest to, and how far: the size of the gap. -1 if there is no other.
+  int nearest = -1;
+  double gap = 0.0;
+};
+
+/// One side of an edge of a boundary in space: the stretch of a loop that runs along it.
+struct EdgeUse {
+  int patch = 0;
+  /// Indices into trim_loops(shape) and TrimLoop::curves.
+  int loop = 0;
+  int curve = 0;
+  /// In the parameter of that pcurve.
+  Interval domain;
+  /// The loop runs from the edge's first vertex to its last. (Whether the patch is turned over plays no part.)
+  bool forward = true;
+};
+
+/// Where two patches meet, or a patch itself along a seam, between two vertices.
+struct BoundaryEdge {
+  /// Indices into Topology::vertices; equal for a closed edge.
+  int from = 0;
+  int to = 0;
+  EdgeUse first;
+  EdgeUse second;
+  /// The largest distance between the two uses.
+  double gap = 0.0;
 };
 
 /// A loop (Dim = 2) or shell (Dim = 3): patches connected by shared ends or edges.
@@ -35,18 +79,40 @@ template <int Dim>
 struct Topology {
   std::vector<Shell<Dim>> shells;
   std::vector<FreeEdge<Dim>> free_edges;
-  /// The largest distance between ends or edges that were taken as the same.
+  /// Dim = 3: where edges end, and every edge that two patches share. Curves of loops that are on neither list are
+  /// degenerate (poles), or bridge gaps.
+  std::vector<Point<Dim>> vertices;
+  std::vector<BoundaryEdge> edges;
+  /// The largest distance between ends or edges that were taken as the same, and (Dim = 3) a point there.
   double largest_gap = 0.0;
+  Point<Dim> largest_gap_place = Point<Dim>::Zero();
   /// Distances up to this counted as coincidence, in the units of the shape.
   double tolerance = 0.0;
+  /// Dim = 3: the distance up to which edges that nothing else came near had to be searched for their partners; equal
+  /// to `tolerance` where that was enough.
+  double largest_tolerance = 0.0;
   /// Every shell is closed.
   bool closed = false;
 };
+
+/// For each patch, loop and curve of trim_loops() the number of the edge, shared by two curves, that the file names
+/// there, or -1; an inner list may be empty.
+using SharedEdges = std::vector<std::vector<std::vector<int>>>;
 
 struct OrientationOptions {
   /// Ends and edges nearer than this count as the same; relative to the diagonal of the bounding box. 1e-6 is far
   /// above what 9 printed decimals cost and far below a feature.
   double tolerance = 1e-6;
+  /// Dim = 3: edges that are free within the tolerance are searched for partners up to this distance, relative to the
+  /// diagonal, and locally bounded (match_edges()); 0: not at all. For files, of which a fifth need more than 1e-5:
+  /// file_gap.
+  double largest_relative_gap = 0.0;
+  /// Dim = 3: edges that the file says are shared. Believed if the curves run along each other to a tenth of their
+  /// length.
+  SharedEdges shared_edges = {};
+
+  /// What CAD files call closed: above the gaps that are met in practice, below most features.
+  static constexpr double file_gap = 1e-3;
 };
 
 template <int Dim>
@@ -60,10 +126,11 @@ struct OrientedBoundary {
 /// orientations consistent within each, and turns each so that its normals point out of the material: by nesting
 /// depth, odd levels are voids. An open shell keeps consistent orientations.
 ///
-/// Throws GeometryError, naming patches and place, for: an edge shared by more than two patches; a shell that cannot
-/// be oriented (a Moebius strip); a closed shell without content; a boundary whose coordinates coincidence_tolerance()
-/// refuses; for Dim = 2 also loops that cross themselves or one another (touching is allowed); for Dim = 3 shells that
-/// cross one another so far that a few points of one, spread over it, see it (that is no proof that they do not).
+/// Throws GeometryError, naming patches and place, for: edges shared by more than two patches, unless these are solids
+/// that touch there (match_edges()); the same face twice; a shell that cannot be oriented (a Moebius strip); a closed
+/// shell without content; a boundary whose coordinates coincidence_tolerance() refuses; for Dim = 2 also loops that
+/// cross themselves or one another (touching is allowed); for Dim = 3 shells that cross one another so far that a few
+/// points of one, spread over it, see it (that is no proof that they do not).
 template <int Dim>
 OrientedBoundary<Dim> orient(const Boundary<Dim>& boundary, const OrientationOptions& options = {});
 

@@ -13,13 +13,21 @@
 #include "geometry/topology/coincidence.h"
 #include "geometry/topology/edge_matching.h"
 #include "geometry/topology/enclosed_volume.h"
+#include "geometry/topology/free_edges.h"
 #include "geometry/topology/orientation.h"
+#include "geometry/trimming/lifted_curve.h"
 
 namespace isorim::geometry {
 namespace {
 
 std::string at(const Point3& point) {
   return fmt::format("({:.9g}, {:.9g}, {:.9g})", point.x(), point.y(), point.z());
+}
+
+Point3 place_on(const Boundary<3>& boundary, const SurfaceEdge& edge, double t) {
+  const SurfaceShape& shape = boundary.patches[static_cast<std::size_t>(edge.patch)].shape;
+  const TrimLoop loop = trim_loops(shape)[static_cast<std::size_t>(edge.loop)];
+  return lifted_point(surface_of(shape), loop.curves[static_cast<std::size_t>(edge.curve)], t);
 }
 
 /// A neighbour across an edge; relation +1 if both natural normals agree there.
@@ -58,8 +66,8 @@ class ShellFinder {
     const EdgeJoint& joint = matching_.joints[static_cast<std::size_t>(index)];
     const SurfaceEdge& a = edge_of(joint.first);
     const SurfaceEdge& b = edge_of(joint.second);
-    // Consistent neighbours run through their common edge in opposite directions.
-    const int relation = -a.direction * b.direction * (joint.same_direction ? 1 : -1);
+    // The loops of consistent neighbours run through their common edge in opposite directions.
+    const int relation = joint.same_direction ? -1 : 1;
     neighbours_[static_cast<std::size_t>(a.patch)].push_back({b.patch, relation, index});
     neighbours_[static_cast<std::size_t>(b.patch)].push_back({a.patch, relation, index});
   }
@@ -88,9 +96,9 @@ class ShellFinder {
   }
 
   [[noreturn]] void refuse_one_sided(int patch, const Neighbour& next) const {
-    const EdgePiece& piece =
-        matching_.pieces[static_cast<std::size_t>(matching_.joints[static_cast<std::size_t>(next.joint)].first)];
-    const Point3 place = evaluate(matching_.edges[static_cast<std::size_t>(piece.edge)].curve, piece.domain.middle());
+    const int piece = matching_.joints[static_cast<std::size_t>(next.joint)].first;
+    const Point3 place =
+        place_on(boundary_, edge_of(piece), matching_.pieces[static_cast<std::size_t>(piece)].domain.middle());
     throw GeometryError(
         patch == next.patch
             ? fmt::format("patch '{}' meets itself at {} with its normal reversed: the shell has one side only "
@@ -201,15 +209,22 @@ void turn_outward(const Boundary<3>& boundary, const ElementTable<3>& table, Top
   }
 }
 
-std::vector<FreeEdge<3>> free_edges(const EdgeMatching& matching) {
-  std::vector<FreeEdge<3>> result;
-  for (const int index : matching.free_pieces) {
-    const EdgePiece& piece = matching.pieces[static_cast<std::size_t>(index)];
-    const SurfaceEdge& edge = matching.edges[static_cast<std::size_t>(piece.edge)];
-    result.push_back(
-        {edge.patch, edge.side, evaluate(edge.curve, piece.domain.first), evaluate(edge.curve, piece.domain.last)});
+EdgeUse use_of(const EdgeMatching& matching, int index, int from) {
+  const EdgePiece& piece = matching.pieces[static_cast<std::size_t>(index)];
+  const SurfaceEdge& edge = matching.edges[static_cast<std::size_t>(piece.edge)];
+  return {edge.patch, edge.loop, edge.curve, piece.domain, piece.from == from};
+}
+
+std::vector<BoundaryEdge> shared_edges(const EdgeMatching& matching) {
+  std::vector<BoundaryEdge> edges;
+  for (const EdgeJoint& joint : matching.joints) {
+    const EdgePiece& piece = matching.pieces[static_cast<std::size_t>(joint.first)];
+    BoundaryEdge edge{piece.from, piece.to, use_of(matching, joint.first, piece.from),
+                      use_of(matching, joint.second, piece.from), joint.gap};
+    edge.second.forward = joint.same_direction;
+    edges.push_back(edge);
   }
-  return result;
+  return edges;
 }
 
 }  // namespace
@@ -218,15 +233,21 @@ template <>
 OrientedBoundary<3> orient<3>(const Boundary<3>& boundary, const OrientationOptions& options) {
   if (boundary.patches.empty()) throw GeometryError("the boundary has no patches");
   const ElementTable<3> table = bezier_elements(boundary);
+  const BoundingBox<3> box = bounding_box(table);
   OrientedBoundary<3> result{boundary, {}};
   Topology<3>& topology = result.topology;
-  topology.tolerance = coincidence_tolerance(bounding_box(table), options.tolerance);
+  topology.tolerance = coincidence_tolerance(box, options.tolerance);
 
-  const EdgeMatching matching = match_edges(boundary, topology.tolerance);
+  EdgeMatching matching =
+      match_edges(boundary, {topology.tolerance, options.largest_relative_gap * box.diagonal(), options.shared_edges});
   topology.largest_gap = matching.largest_gap;
-  topology.free_edges = free_edges(matching);
+  topology.largest_gap_place = matching.largest_gap_place;
+  topology.largest_tolerance = std::max(topology.tolerance, matching.largest_tolerance);
+  topology.edges = shared_edges(matching);
+  topology.free_edges = free_edges(boundary, matching);
   std::vector<int> signs;
   topology.shells = ShellFinder(boundary, matching).find(signs);
+  topology.vertices = std::move(matching.vertices);
   turn_outward(boundary, table, topology, signs);
   topology.closed = std::ranges::all_of(topology.shells, [](const Shell<3>& shell) { return shell.closed; });
   for (std::size_t i = 0; i < signs.size(); ++i) result.boundary.patches[i].orientation = signs[i];

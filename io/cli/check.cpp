@@ -74,9 +74,9 @@ std::string free_edges_text(const io::Model<Dim>& model) {
       text += fmt::format("  free end: {} of {} at {}\n", edge.side == 0 ? "start" : "end", patch,
                           point_text<Dim>(edge.from));
     } else {
-      constexpr const char* sides[] = {"v = first", "u = last", "v = last", "u = first"};
-      text += fmt::format("  free edge: {} of {} from {} to {}\n", sides[edge.side], patch, point_text<Dim>(edge.from),
-                          point_text<Dim>(edge.to));
+      text += fmt::format("  free edge: curve {} of loop {} of {} from {} to {}, {:.3g} from the nearest other\n",
+                          edge.curve + 1, edge.loop + 1, patch, point_text<Dim>(edge.from), point_text<Dim>(edge.to),
+                          edge.gap);
     }
   }
   return text;
