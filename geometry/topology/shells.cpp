@@ -11,6 +11,7 @@
 #include "geometry/bezier/element_table.h"
 #include "geometry/errors.h"
 #include "geometry/topology/coincidence.h"
+#include "geometry/topology/duplicate_faces.h"
 #include "geometry/topology/edge_matching.h"
 #include "geometry/topology/enclosed_volume.h"
 #include "geometry/topology/free_edges.h"
@@ -137,8 +138,9 @@ std::vector<ClosedShell> closed_shells(const ElementTable<3>& table, const std::
   for (const BezierElement<3>& element : table.elements) {
     const std::size_t patch = static_cast<std::size_t>(element.patch);
     if (slot_of_patch[patch] < 0) continue;
-    closed[static_cast<std::size_t>(slot_of_patch[patch])].pieces.emplace_back(
-        table.net_matrix(element), element.degree[0], element.degree[1], signs[patch]);
+    // Orientations as given play no part.
+    closed[static_cast<std::size_t>(slot_of_patch[patch])].pieces.push_back(
+        surface_piece(table, element, signs[patch] * element.orientation));
   }
   for (ClosedShell& shell : closed) {
     shell.lower = shell.pieces.front().lower;
@@ -174,8 +176,7 @@ bool is_inside(const ClosedShell& inner, const ClosedShell& outer, double tolera
   std::size_t inside = 0;
   std::size_t decided = 0;
   for (std::size_t i = 0; i < std::min(most, count) && decided < wanted; ++i) {
-    // Off the middle, so that shells that touch at regular places are not probed there.
-    const Point3 point = evaluate(inner.pieces[(i * stride) % count], 0.4142, 0.5858);
+    const Point3 point = probe_point(inner.pieces[(i * stride) % count]);
     const std::optional<int> turns = winding_number(outer.pieces, point, tolerance);
     if (!turns) continue;
     ++decided;
@@ -183,8 +184,22 @@ bool is_inside(const ClosedShell& inner, const ClosedShell& outer, double tolera
     if (inside > 0 && inside < decided) throw GeometryError(fmt::format("two shells cross near {}", at(point)));
   }
   if (decided == 0)
-    throw GeometryError(fmt::format("two shells coincide near {}", at(inner.pieces.front().corner(0, 0))));
+    throw GeometryError(fmt::format("two shells coincide near {}", at(probe_point(inner.pieces.front()))));
   return inside > 0;
+}
+
+[[noreturn]] void refuse_empty(const Boundary<3>& boundary, const Shell<3>& shell, double tolerance,
+                               const Point3& place) {
+  const auto patch = [&](std::size_t i) -> const Patch<3>& {
+    return boundary.patches[static_cast<std::size_t>(shell.patches[i])];
+  };
+  const std::size_t count = shell.patches.size();
+  if (count == 2 && is_same_face(patch(0), patch(1), tolerance)) {
+    throw GeometryError(
+        fmt::format("patches '{}' and '{}' are the same face, given twice", patch(0).name, patch(1).name));
+  }
+  throw GeometryError(fmt::format("the closed shell of patch '{}'{} encloses no volume (at {})", patch(0).name,
+                                  count > 1 ? fmt::format(" and {} more", count - 1) : "", at(place)));
 }
 
 /// Turns the signs of every closed shell so that its normals point out of the material; odd depth is a void.
@@ -193,13 +208,8 @@ void turn_outward(const Boundary<3>& boundary, const ElementTable<3>& table, Top
   const std::vector<ClosedShell> closed = closed_shells(table, topology.shells, signs);
   for (const ClosedShell& shell : closed) {
     Shell<3>& own = topology.shells[shell.index];
-    const std::optional<int> sign = volume_sign(shell.pieces, 0.5 * topology.tolerance);
-    if (!sign) {
-      throw GeometryError(fmt::format("the closed shell of patch '{}'{} encloses no volume (at {})",
-                                      boundary.patches[static_cast<std::size_t>(own.patches.front())].name,
-                                      own.patches.size() > 1 ? fmt::format(" and {} more", own.patches.size() - 1) : "",
-                                      at(shell.pieces.front().corner(0, 0))));
-    }
+    const std::optional<int> sign = volume_sign(shell.pieces);
+    if (!sign) refuse_empty(boundary, own, topology.tolerance, probe_point(shell.pieces.front()));
     const auto contains = [&](const ClosedShell& other) {
       return &other != &shell && is_inside(shell, other, topology.tolerance);
     };

@@ -238,7 +238,12 @@ TEST(OrientShells, RefusesShellsWithoutVolume) {
   EXPECT_THAT(refusal([&] {
                 orient(Boundary<3>{{{"front", sheet}, {"back", sheet}}});
               }),
-              HasSubstr("the closed shell of patch 'front' and 1 more encloses no volume"));
+              HasSubstr("patches 'front' and 'back' are the same face, given twice"));
+  const auto [left, right] = split(sheet, Direction::u, 0.3);
+  EXPECT_THAT(refusal([&] {
+                orient(Boundary<3>{{{"front", sheet}, {"left", left}, {"right", right}}});
+              }),
+              HasSubstr("the closed shell of patch 'front' and 2 more encloses no volume"));
   EXPECT_THAT(refusal([] { orient(Boundary<3>{}); }), HasSubstr("has no patches"));
 }
 
