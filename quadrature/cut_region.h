@@ -42,8 +42,10 @@ class CutRegion {
   struct Curve {
     std::size_t offset;
     int degree;
-    /// All weights are equal.
+    /// All weights are 1.
     bool polynomial;
+    /// y is constant.
+    bool level;
   };
   /// A part of the boundary on or beyond x = 1: what of [0, 1] its y covers, and in which direction.
   struct Strip {
@@ -74,9 +76,5 @@ class CutRegion {
   Extent extent_ = Extent::part;
   mutable RegionMoments moments_;
 };
-
-/// The number of Gauss-Legendre points with which the moments of the given counts are integrated along a rational
-/// Bezier curve, 3 x (degree + 1) homogeneous points, to 1e-15 of the curve's extent in y; 0: more than there are.
-int points_along_curve(std::span<const double> net, int degree, bool polynomial, const Orders<2>& counts);
 
 }  // namespace isorim::quadrature

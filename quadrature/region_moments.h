@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "quadrature/element_sums.h"
+#include "quadrature/line_rule.h"
 
 /// Quadrature over a part D of the unit cell by its moments
 ///
@@ -19,20 +20,6 @@
 /// quadrature: Sloan & Smith, Numer. Math. 34, 1980. Moments from the boundary: Sommariva & Vianello, BIT Numer. Math.
 /// 49, 2009; Gunderman, Weiss & Evans, Comput. Methods Appl. Mech. Eng. 375, 2021.)
 namespace isorim::quadrature {
-
-/// Points and weights of line integrals int f(x, y) dy.
-struct LineRule {
-  std::vector<double> x;
-  std::vector<double> y;
-  /// y'(s) times the weight.
-  std::vector<double> dy;
-
-  void add(double at_x, double at_y, double weight) {
-    x.push_back(at_x);
-    y.push_back(at_y);
-    dy.push_back(weight);
-  }
-};
 
 /// The moments m_ij of a region, i < counts[0], j < counts[1].
 struct RegionMoments {

@@ -121,8 +121,9 @@ GeometricProperties<Dim> geometric_properties(const geometry::ElementTable<Dim>&
 
   GeometricProperties<Dim> result;
   result.boundary_measure = {sums.value[Layout::measure], sums.error[Layout::measure]};
-  result.closure_defect =
-      sums.value.template segment<Dim>(Layout::normal).matrix().norm() / result.boundary_measure.value;
+  const double total_normal = sums.value.template segment<Dim>(Layout::normal).matrix().norm();
+  result.closure_defect = total_normal / result.boundary_measure.value;
+  result.pole_shift = total_normal * box.diagonal() / Dim;
   result.evaluations = sums.evaluations;
   result.boundary_status =
       quadrature::judge(result.boundary_measure.error, options.integration.tolerance * result.boundary_measure.value,

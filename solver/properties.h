@@ -37,6 +37,10 @@ struct GeometricProperties {
   std::optional<DomainProperties<Dim>> domain;
   /// |int n dS| / int dS: zero but for rounding on a closed boundary; what gaps cost otherwise.
   double closure_defect = 0.0;
+  /// What the gaps may cost, apart from the errors of the quadrature: the change of the enclosed measure (absolute, in
+  /// the unit of length to the power Dim) when the pole moves by the diagonal d of the bounding box,
+  /// |int n dS| d / Dim. (Moved by a, it changes by -a . int n dS / Dim.) Zero but for rounding on a closed boundary.
+  double pole_shift = 0.0;
   /// Points of the boundary at which its position and tangents were evaluated.
   std::int64_t evaluations = 0;
   quadrature::Status boundary_status = quadrature::Status::converged;
@@ -55,6 +59,8 @@ struct PropertyOptions {
 
 /// Perimeter, area, centroid and second moments (Dim = 2), or area, volume, centroid and inertia (Dim = 3) by the
 /// radial integration method, all in one pass over the elements and in parallel.
+///
+/// A boundary with gaps is integrated like a closed one; closure_defect and pole_shift tell what that is worth.
 ///
 /// Throws GeometryError if the enclosed measure is not positive beyond its error (a boundary turned inside out or
 /// without content): callers orient first, see geometry/topology/orientation.h.

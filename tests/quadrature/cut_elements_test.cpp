@@ -1,5 +1,6 @@
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -162,6 +163,70 @@ TEST(CutElements, SumsAgreeWithSectors) {
                                                              << sums.error.transpose();
     }
   }
+}
+
+/// A region of random shape: a wavy outline, holes, or a polygon with very different angles.
+TrimmedRegion random_region(std::mt19937& generator) {
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const auto between = [&](double low, double high) { return low + (high - low) * unit(generator); };
+  TrimmedRegion region;
+  switch (generator() % 4) {
+    case 0:
+      testing::add_blob(region, {0.5, 0.5}, between(0.1, 0.35), between(0.0, 0.4),
+                        2 + static_cast<int>(generator() % 4), 12, 1, between(0.0, 6.0));
+      break;
+    case 1:
+      region = testing::whole_cell();
+      testing::add_circle(region, {0.3, between(0.3, 0.7)}, between(0.02, 0.29), 4, -1);
+      testing::add_blob(region, {0.75, between(0.3, 0.7)}, between(0.05, 0.15), 0.3, 3, 9, -1);
+      break;
+    case 2:
+      region = testing::polygon({{between(0, 0.2), between(0, 0.2)},
+                                 {between(0.5, 1), between(0, 0.4)},
+                                 {between(0.4, 0.6), between(0.41, 0.6)},
+                                 {between(0.6, 1), between(0.7, 1)}});
+      break;
+    default:
+      const double thickness = std::pow(10.0, between(-6.0, -1.0));
+      region = testing::polygon({{0.0, 0.0}, {1.0, 1.0 - thickness}, {1.0, 1.0}, {0.0, thickness}});
+  }
+  return region;
+}
+
+struct Coverage {
+  int checked = 0;
+  /// Sums whose true error is more than twice the estimate.
+  int missed = 0;
+};
+
+void measure_coverage(std::array<int, 2> degree, double largest_weight, Coverage& coverage) {
+  const Point3 pole = Point3::Constant(0.4);
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    std::mt19937 generator(seed);
+    const ElementTable<3> table = cut_element(random_region(generator), degree, largest_weight, 100 + seed);
+    const ElementSums<3> exact = testing::sums_by_sectors(table, 0, pole, {0.4, 0.5}, 3);
+    for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
+      Options options;
+      options.tolerance = tolerance;
+      const BoundarySums<3> sums = boundary_sums(table, pole, SumScope::all, options);
+      const ElementSums<3> error = (sums.value - exact).abs();
+      coverage.checked += static_cast<int>(error.size());
+      coverage.missed += static_cast<int>((error > 2.0 * sums.error + 1e-13).count());
+      EXPECT_LE(error[0], 10.0 * tolerance * exact[0] + 1e-13)
+          << "degree " << degree[0] << " weight " << largest_weight << " seed " << seed << " tolerance " << tolerance;
+    }
+  }
+}
+
+TEST(CutElements, EstimateCoversTheTrueErrorOfRandomElements) {
+  Coverage coverage;
+  for (const double largest_weight : {1.0, 2.0, 10.0}) {
+    measure_coverage({2, 2}, largest_weight, coverage);
+    measure_coverage({3, 1}, largest_weight, coverage);
+    measure_coverage({4, 3}, largest_weight, coverage);
+  }
+  EXPECT_EQ(coverage.checked, 9072);
+  EXPECT_EQ(coverage.missed, 0);
 }
 
 }  // namespace

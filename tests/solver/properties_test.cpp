@@ -98,6 +98,44 @@ TEST(Properties, OpenBoundaryHasAnAreaAndADefect) {
   EXPECT_FALSE(result.domain);
 }
 
+// The volume changes with the pole as the pole shift says, and no more than that for any pole in the bounding box.
+TEST(Properties, PoleShiftIsWhatTheGapsCost) {
+  geometry::Boundary<3> open = geometry::box({1.0, 2.0, 3.0});
+  open.patches.pop_back();
+  const auto table = bezier_elements(open);
+  const auto volume = [&](const Point3& pole) {
+    PropertyOptions<3> options;
+    options.pole = pole;
+    return geometric_properties(table, options);
+  };
+  const auto middle = volume(Point3(0.5, 1.0, 1.5));
+  const Vector3 total_normal = [&] {
+    Vector3 normal;
+    for (int i = 0; i < 3; ++i) {
+      Point3 pole(0.5, 1.0, 1.5);
+      pole[i] -= 1e-2;
+      normal[i] = 3e2 * (volume(pole).domain->measure.value - middle.domain->measure.value);
+    }
+    return normal;
+  }();
+  EXPECT_NEAR(middle.pole_shift, total_normal.norm() * std::sqrt(14.0) / 3.0, 1e-11);
+  EXPECT_NEAR(middle.closure_defect, total_normal.norm() / middle.boundary_measure.value, 1e-12);
+  const Vector3 diagonal = std::sqrt(14.0) * total_normal.normalized();
+  const Point3 moved = Point3(0.5, 1.0, 1.5) - diagonal;
+  EXPECT_NEAR(volume(moved).domain->measure.value - middle.domain->measure.value, middle.pole_shift, 1e-12);
+}
+
+TEST(Properties, PoleShiftInThePlane) {
+  geometry::Boundary<2> open = geometry::rectangle(Vector2(3.0, 4.0));
+  open.patches.pop_back();
+  PropertyOptions<2> options;
+  options.scope = PropertyOptions<2>::Scope::boundary_only;
+  const auto result = geometric_properties(bezier_elements(open), options);
+  EXPECT_NEAR(result.pole_shift, 4.0 * 5.0 / 2.0, 1e-13);
+  const auto closed = geometric_properties(bezier_elements(geometry::rectangle(Vector2(3.0, 4.0))));
+  EXPECT_LT(closed.pole_shift, 1e-14);
+}
+
 TEST(Properties, InvertedBoundaryIsRefused) {
   geometry::Boundary<3> box = geometry::box({1.0, 1.0, 1.0});
   for (auto& patch : box.patches) patch.orientation = -patch.orientation;
