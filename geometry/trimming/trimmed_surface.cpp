@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -43,16 +44,26 @@ struct AllowedParameters {
   }
 };
 
+/// A point of the piece outside the allowed parameters, if there is one: bisected until the control polygon, which may
+/// reach farther out than the curve, is inside.
+std::optional<Point2> point_outside(const PlanePiece& piece, const AllowedParameters& allowed, int depth) {
+  if (allowed.contains(piece.lower) && allowed.contains(piece.upper)) return std::nullopt;
+  for (const Point2& end : {piece.start(), piece.end()})
+    if (!allowed.contains(end)) return end;
+  constexpr int deepest = 40;
+  if (depth == deepest) return std::nullopt;
+  const auto [first, second] = bisect(piece);
+  if (const std::optional<Point2> outside = point_outside(first, allowed, depth + 1)) return outside;
+  return point_outside(second, allowed, depth + 1);
+}
+
 void require_inside(const NurbsCurve<2>& curve, const AllowedParameters& allowed, const std::string& which) {
   for (const BezierSegment& segment : bezier_segments({curve.knots(), curve.homogeneous()})) {
-    for (Eigen::Index i = 0; i < segment.coefficients.cols(); ++i) {
-      const Point2 uv = segment.coefficients.col(i).head<2>() / segment.coefficients(2, i);
-      if (allowed.contains(uv)) continue;
-      throw GeometryError(
-          fmt::format("{} leaves the surface's domain: control point {}; expected u in [{:.9g}, {:.9g}] "
-                      "and v in [{:.9g}, {:.9g}]",
-                      which, at(uv), allowed.u.first, allowed.u.last, allowed.v.first, allowed.v.last));
-    }
+    const std::optional<Point2> outside = point_outside(PlanePiece(segment.coefficients), allowed, 0);
+    if (!outside) continue;
+    throw GeometryError(
+        fmt::format("{} leaves the surface's domain at {}; expected u in [{:.9g}, {:.9g}] and v in [{:.9g}, {:.9g}]",
+                    which, at(*outside), allowed.u.first, allowed.u.last, allowed.v.first, allowed.v.last));
   }
 }
 

@@ -26,8 +26,8 @@ class TrimmedSurface {
   static constexpr double parameter_tolerance = 1e-6;
 
   /// Throws GeometryError if there is no loop or a loop without curves; if a curve ends farther from the next one's
-  /// start, or its control points lie farther outside the surface's domain, than parameter_tolerance; or if the loops
-  /// enclose no positive area. The message names loop and curve (counted from 1) and the place.
+  /// start, or runs farther outside the surface's domain, than parameter_tolerance; or if the loops enclose no positive
+  /// area. The message names loop and curve (counted from 1) and the place.
   TrimmedSurface(NurbsSurface<3> surface, std::vector<TrimLoop> loops);
 
   const NurbsSurface<3>& surface() const { return surface_; }
