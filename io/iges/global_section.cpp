@@ -1,8 +1,4 @@
-#include <algorithm>
-#include <array>
-#include <cctype>
-#include <cmath>
-#include <cstdlib>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -11,47 +7,10 @@
 
 #include "geometry/errors.h"
 #include "io/iges/records.h"
+#include "io/iges/units.h"
 
 namespace isorim::io::iges {
 namespace {
-
-struct LengthUnit {
-  int flag;
-  std::string_view symbol;
-  double millimetres;
-  /// As the standard and files spell it, in capitals.
-  std::array<std::string_view, 6> names;
-};
-
-/// IGES 5.3, section 2.2.4.3.14 and .15.
-constexpr std::array<LengthUnit, 10> length_units{{
-    {1, "in", 25.4, {"IN", "INCH", "INCHES", "\"", "", ""}},
-    {2, "mm", 1.0, {"MM", "MILLIMETER", "MILLIMETRE", "MILLIMETERS", "MILLIMETRES", ""}},
-    {4, "ft", 304.8, {"FT", "FOOT", "FEET", "'", "", ""}},
-    {5, "mi", 1609344.0, {"MI", "MILE", "MILES", "", "", ""}},
-    {6, "m", 1000.0, {"M", "METER", "METRE", "METERS", "METRES", ""}},
-    {7, "km", 1e6, {"KM", "KILOMETER", "KILOMETRE", "KILOMETERS", "KILOMETRES", ""}},
-    {8, "mil", 0.0254, {"MIL", "MILS", "", "", "", ""}},
-    {9, "um", 0.001, {"UM", "MICRON", "MICRONS", "MICROMETER", "MICROMETRE", "MICROMETERS"}},
-    {10, "cm", 10.0, {"CM", "CENTIMETER", "CENTIMETRE", "CENTIMETERS", "CENTIMETRES", ""}},
-    {11, "uin", 2.54e-5, {"UIN", "MICROINCH", "MICROINCHES", "", "", ""}},
-}};
-
-const LengthUnit* unit_of_flag(int flag) {
-  const auto* found =
-      std::find_if(length_units.begin(), length_units.end(), [&](const LengthUnit& unit) { return unit.flag == flag; });
-  return found == length_units.end() ? nullptr : found;
-}
-
-const LengthUnit* unit_of_name(std::string_view name) {
-  std::string capitals(trim(name));
-  for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  if (capitals.empty()) return nullptr;
-  const auto* found = std::find_if(length_units.begin(), length_units.end(), [&](const LengthUnit& unit) {
-    return std::find(unit.names.begin(), unit.names.end(), capitals) != unit.names.end();
-  });
-  return found == length_units.end() ? nullptr : found;
-}
 
 constexpr const char* section = "global section";
 
