@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -22,7 +21,7 @@ enum class Form {
 
 /// How a patch looks.
 struct Look {
-  std::optional<Colour> colour;
+  std::optional<Colour> colour = {};
   int level = 0;
 };
 
@@ -35,11 +34,11 @@ struct WriterOptions {
   /// One that IGES has a flag for: in, mm, ft, mi, m, km, mil, um, cm, uin. "" and "?" are written as mm.
   std::string unit = "mm";
   /// Name of the part, also in the start section.
-  std::string title;
+  std::string title = {};
   /// YYYYMMDD.HHMMSS; empty: now.
-  std::string date;
+  std::string date = {};
   /// One a patch, or none.
-  std::vector<Look> looks;
+  std::vector<Look> looks = {};
 };
 
 struct WriterReport {
