@@ -176,7 +176,7 @@ ParametrisedCurve parametric_spline(std::span<const double> breakpoints,
       const double gap = (points.col(first) - piece.col(0)).norm();
       const double reach = (piece.rightCols(degree).colwise() - piece.col(0)).colwise().norm().maxCoeff();
       if (!(gap <= 1e-6 * (size + reach)))
-        throw GeometryError(fmt::format("parametric spline: pieces {} and {} are {} apart", i, i + 1, gap));
+        throw GeometryError(fmt::format("parametric spline: pieces {} and {} are {:.3g} apart", i, i + 1, gap));
     }
     points.middleCols(first, degree + 1) = piece;
   }

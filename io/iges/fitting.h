@@ -25,7 +25,7 @@ struct FittedCurve {
   double deviation = 0.0;
 };
 
-/// A polynomial spline of degree 10 with the parameters of the function: each piece interpolates at 11
+/// A polynomial spline of degree 12 with the parameters of the function: each piece interpolates at 11
 /// Chebyshev-Lobatto points, and pieces are halved until they meet the tolerance. The pieces meet exactly at their
 /// ends.
 ///

@@ -252,7 +252,7 @@ ParametrisedSurface parametric_spline_surface(std::span<const double> breakpoint
     }
   }
   if (!(gap <= 1e-6 * size))
-    throw GeometryError(fmt::format("parametric spline surface: neighbouring patches are {} apart", gap));
+    throw GeometryError(fmt::format("parametric spline surface: neighbouring patches are {:.3g} apart", gap));
   return {NurbsSurface<3>::from_points(piecewise_knots(degrees.u, breakpoints_u),
                                        piecewise_knots(degrees.v, breakpoints_v), points),
           {},
