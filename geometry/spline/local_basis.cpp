@@ -11,8 +11,17 @@ namespace {
 constexpr std::size_t capacity = KnotVector::max_degree + 1;
 
 /// Piegl & Tiller's ndu: above and on the diagonal the basis functions of all degrees (column = degree), below it
-/// the knot differences.
-using Triangle = std::array<std::array<double, capacity>, capacity>;
+/// the knot differences. Rows follow each other without gaps, whatever the degree.
+class Triangle {
+ public:
+  explicit Triangle(int degree) : stride_(degree + 1) {}
+  double* operator[](int row) { return values_ + row * stride_; }
+  const double* operator[](int row) const { return values_ + row * stride_; }
+
+ private:
+  int stride_;
+  double values_[capacity * capacity];
+};
 
 void fill_triangle(const KnotVector& knots, int span, double u, Triangle& ndu) {
   ndu[0][0] = 1.0;
@@ -27,6 +36,15 @@ void fill_triangle(const KnotVector& knots, int span, double u, Triangle& ndu) {
       saved = (u - left) * share;
     }
     ndu[j][j] = saved;
+  }
+}
+
+/// First derivatives, without the factor p.
+void differentiate_once(const Triangle& ndu, int p, Eigen::Ref<Eigen::MatrixXd> table) {
+  for (int r = 0; r <= p; ++r) {
+    const double before = r > 0 ? 1.0 / ndu[p][r - 1] * ndu[r - 1][p - 1] : 0.0;
+    const double after = r < p ? 1.0 / ndu[p][r] * ndu[r][p - 1] : 0.0;
+    table(r, 1) = before - after;
   }
 }
 
@@ -63,12 +81,16 @@ void differentiate(const Triangle& ndu, int p, int r, Eigen::Ref<Eigen::MatrixXd
 
 void fill_basis_table(const KnotVector& knots, int span, double u, Eigen::Ref<Eigen::MatrixXd> table) {
   const int p = knots.degree();
-  Triangle ndu;
+  Triangle ndu(p);
   fill_triangle(knots, span, u, ndu);
   for (int r = 0; r <= p; ++r) table(r, 0) = ndu[r][p];
   if (table.cols() == 1) return;
 
-  for (int r = 0; r <= p; ++r) differentiate(ndu, p, r, table);
+  if (table.cols() == 2) {
+    differentiate_once(ndu, p, table);
+  } else {
+    for (int r = 0; r <= p; ++r) differentiate(ndu, p, r, table);
+  }
   double factor = p;
   for (int k = 1; k < table.cols(); ++k) {
     if (k > p) {

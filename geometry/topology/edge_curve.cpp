@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "geometry/spline/local_basis.h"
+
 namespace isorim::geometry {
 namespace {
 
@@ -58,14 +60,24 @@ Point3 EdgeCurve::at(double t) const {
   return exact_ ? evaluate(*exact_, t) : lifted_point(*surface_, pcurve_, t);
 }
 
-CurveJet<3> EdgeCurve::tangent(double t) const {
-  if (exact_) return evaluate_jet(*exact_, t);
-  const LiftedJet lifted = jet(t);
-  return {lifted.point, lifted.tangent, Vector3::Zero()};
+EdgeCurve::Tangent EdgeCurve::tangent(double t) const {
+  if (!exact_) {
+    const LiftedJet lifted = jet(t);
+    return {lifted.point, lifted.tangent};
+  }
+  const LocalBasis<1> basis = local_basis<1>(exact_->knots(), t);
+  const Eigen::Matrix<double, 4, 2> value =
+      exact_->homogeneous().middleCols(basis.first, basis.table.rows()).lazyProduct(basis.table);
+  const Point3 point = value.col(0).head<3>() / value(3, 0);
+  return {point, (value.col(1).head<3>() - value(3, 1) * point) / value(3, 0)};
+}
+
+bool EdgeCurve::has_straight_legs() const {
+  return exact_ && exact_->degree() == 1 && exact_->is_polynomial();
 }
 
 void EdgeCurve::sample() {
-  const bool straight_legs = exact_ && exact_->degree() == 1 && exact_->is_polynomial();
+  const bool straight_legs = has_straight_legs();
   const std::vector<double> parameters =
       exact_ ? divided(exact_->knots().breakpoints(), straight_legs ? 1 : 4)
              : divided(pcurve_.knots().breakpoints(), std::max(8, crossed_knot_lines(*surface_, pcurve_)));
@@ -122,7 +134,7 @@ double EdgeCurve::length(Interval part) const {
     const double from = std::max(part.first, samples_[leg].t);
     const double to = std::min(part.last, samples_[leg + 1].t);
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      sum += weights[i] * (to - from) * tangent(from + nodes[i] * (to - from)).du.norm();
+      sum += weights[i] * (to - from) * tangent(from + nodes[i] * (to - from)).derivative.norm();
   }
   return sum;
 }
@@ -147,18 +159,18 @@ Interval EdgeCurve::around(std::size_t leg, Interval within) const {
 EdgeCurve::Foot EdgeCurve::refine(const Point3& target, double start, Interval within) const {
   constexpr int most_steps = 30;
   double t = std::clamp(start, within.first, within.last);
-  CurveJet<3> jet = tangent(t);
+  Tangent jet = tangent(t);
   double distance = (jet.point - target).norm();
   for (int i = 0; i < most_steps; ++i) {
-    const double speed = jet.du.squaredNorm();
+    const double speed = jet.derivative.squaredNorm();
     if (!(speed > 0.0)) break;
-    const double step = -jet.du.dot(jet.point - target) / speed;
+    const double step = -jet.derivative.dot(jet.point - target) / speed;
     double fraction = 1.0;
     bool moved = false;
     for (int halving = 0; halving < 8 && !moved; ++halving, fraction *= 0.5) {
       const double next = std::clamp(t + fraction * step, within.first, within.last);
       if (next == t) break;
-      const CurveJet<3> at_next = tangent(next);
+      const Tangent at_next = tangent(next);
       const double d = (at_next.point - target).norm();
       if (!(d < distance)) continue;
       moved = true;

@@ -28,6 +28,8 @@ class EdgeCurve {
   double diagonal() const { return (upper_ - lower_).norm(); }
   /// Number of legs of the polygon that have a part in the interval.
   int leg_count(Interval part) const;
+  /// The curve is its polygon, run through evenly leg by leg.
+  bool has_straight_legs() const;
 
   struct Foot {
     double t = 0.0;
@@ -59,7 +61,11 @@ class EdgeCurve {
     double t = 0.0;
   };
 
-  CurveJet<3> tangent(double t) const;
+  struct Tangent {
+    Point3 point;
+    Vector3 derivative;
+  };
+  Tangent tangent(double t) const;
   void sample();
   void append_samples(double t0, const Point3& p0, double t1, const Point3& p1, int depth);
   std::size_t leg_at(double t) const;

@@ -12,6 +12,9 @@ namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
 
+/// Directions nearer than this count as one, in radians.
+constexpr double tie = 1e-3;
+
 /// Angles about the first leaf's tangent, in [0, 2 pi).
 std::vector<double> angles_about_edge(std::span<const FanLeaf> leaves) {
   const Vector3 axis = leaves.front().tangent;
@@ -57,7 +60,6 @@ bool all_consistent(const Pairs& pairs, std::span<const FanLeaf> leaves) {
 
 /// Whether one leaf of `other` lies between those of `pair` and one does not.
 bool cross(const std::pair<int, int>& pair, const std::pair<int, int>& other, const std::vector<double>& angles) {
-  constexpr double tie = 1e-3;
   const auto angle = [&](int leaf) { return angles[static_cast<std::size_t>(leaf)]; };
   const double width = turn(angle(pair.first), angle(pair.second));
   int inside = 0;
@@ -77,7 +79,12 @@ std::optional<Pairs> pair_fan(std::span<const FanLeaf> leaves) {
   std::map<int, std::vector<int>> by_component;
   for (std::size_t i = 0; i < leaves.size(); ++i) by_component[leaves[i].component].push_back(static_cast<int>(i));
   Pairs result;
+  std::vector<int> single;
   for (auto& [component, order] : by_component) {
+    if (order.size() == 1) {
+      single.push_back(order.front());
+      continue;
+    }
     if (order.size() % 2 != 0) return std::nullopt;
     std::ranges::sort(order, {}, [&](int leaf) { return angles[static_cast<std::size_t>(leaf)]; });
     Pairs even;
@@ -87,12 +94,33 @@ std::optional<Pairs> pair_fan(std::span<const FanLeaf> leaves) {
     if (!all_consistent(better, leaves)) return std::nullopt;
     result.insert(result.end(), better.begin(), better.end());
   }
+  if (single.size() == 2) result.emplace_back(single[0], single[1]);
+  if (single.size() == 1 || single.size() > 2) return std::nullopt;
   for (std::size_t i = 0; i < result.size(); ++i) {
     for (std::size_t k = i + 1; k < result.size(); ++k) {
       if (cross(result[i], result[k], angles)) return std::nullopt;
     }
   }
   return result;
+}
+
+std::optional<Pairs> pair_touching_faces(std::span<const FanLeaf> leaves) {
+  if (leaves.size() != 4) return std::nullopt;
+  std::vector<std::pair<int, int>> ties;
+  for (int i = 0; i < 4; ++i) {
+    for (int k = i + 1; k < 4; ++k) {
+      const FanLeaf& a = leaves[static_cast<std::size_t>(i)];
+      const FanLeaf& b = leaves[static_cast<std::size_t>(k)];
+      if (a.component == b.component) return std::nullopt;
+      if ((a.inward - b.inward).norm() < tie) ties.emplace_back(i, k);
+    }
+  }
+  if (ties.size() != 1) return std::nullopt;
+  std::vector<int> others;
+  for (int i = 0; i < 4; ++i) {
+    if (i != ties[0].first && i != ties[0].second) others.push_back(i);
+  }
+  return Pairs{{ties[0].first, others[0]}, {ties[0].second, others[1]}};
 }
 
 }  // namespace isorim::geometry

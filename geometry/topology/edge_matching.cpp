@@ -47,6 +47,8 @@ struct Piece {
   /// The whole edge.
   bool whole = true;
   enum class State { open, joined, gone } state = State::open;
+  /// The piece that it is joined to.
+  int partner = -1;
 };
 
 /// Vertices that become one in the course of the matching.
@@ -210,8 +212,8 @@ class Matcher {
     if (tolerance > finest_) merge_vertices();
     split_pieces();
     drop_collapsed();
-    for (const std::vector<int>& group : coincident_groups()) {
-      if (group.size() == 2) join(group[0], group[1]);
+    for (const Group& group : coincident_groups()) {
+      if (group.pieces.size() == 2) join(group.pieces[0], group.pieces[1], *group.found);
     }
   }
 
@@ -239,8 +241,8 @@ class Matcher {
     }
   }
 
-  /// Whether a piece between the two vertices is all that keeps them apart: one that is joined, or a whole edge that is
-  /// no mere bridge.
+  /// Whether a piece between the two vertices is a feature that must not vanish: an edge of which at least one side is
+  /// whole, joined or longer than a bridge. Slivers of longer edges on both sides are none.
   bool would_collapse(int first, int second, double distance) {
     if (vertices_.pieces(second).size() < vertices_.pieces(first).size()) std::swap(first, second);
     return std::ranges::any_of(vertices_.pieces(first), [&](int index) {
@@ -248,8 +250,12 @@ class Matcher {
       const bool between =
           (from(piece) == first && to(piece) == second) || (from(piece) == second && to(piece) == first);
       if (!between || piece.state == Piece::State::gone || piece.data.length > 8.0 * distance) return false;
-      return piece.state == Piece::State::joined || (piece.whole && piece.data.length > tolerance_);
+      return is_whole(piece) && (piece.state == Piece::State::joined || piece.data.length > tolerance_);
     });
+  }
+
+  bool is_whole(const Piece& piece) const {
+    return piece.whole || (piece.partner >= 0 && pieces_[slot(piece.partner)].whole);
   }
 
   void split_pieces() {
@@ -322,7 +328,8 @@ class Matcher {
   /// Bridges of gaps and slivers beside T-junctions, once their ends are one vertex.
   void drop_collapsed() {
     for (Piece& piece : pieces_) {
-      if (piece.state != Piece::State::open || from(piece) != to(piece)) continue;
+      if (piece.state == Piece::State::gone || from(piece) != to(piece)) continue;
+      if (piece.state == Piece::State::joined && is_whole(piece)) continue;
       const bool fills_loop = piece.data.length > 0.5 * edge_of(piece).loop_length;
       if (piece.data.length > 4.0 * tolerance_ || fills_loop) continue;
       piece.state = Piece::State::gone;
@@ -344,13 +351,12 @@ class Matcher {
     Point3 place = Point3::Zero();
   };
 
-  /// The largest distance of points of `a` from `b`; false if one is farther than the tolerance (twice that at the
-  /// ends, which may lie on both sides of their vertex).
-  bool runs_along(const Piece& a, const Piece& b, double tolerance, Coincidence& found) const {
+  /// The largest distance of `steps` + 1 points of `a` from `b`; false if one is farther than the tolerance (twice that
+  /// at the ends, which may lie on both sides of their vertex).
+  bool runs_along(const Piece& a, const Piece& b, int steps, double tolerance, Coincidence& found) const {
     const EdgeCurve& curve = edge_of(a).curve;
     const EdgeCurve& other = edge_of(b).curve;
     const Interval domain = a.data.domain;
-    const int steps = std::clamp(2 * curve.leg_count(domain), 4, 24);
     for (int i = 0; i <= steps; ++i) {
       const double t = i == steps ? domain.last : domain.first + domain.length() * i / steps;
       const Point3 point = curve.at(t);
@@ -366,33 +372,51 @@ class Matcher {
 
   /// Whether two pieces run along each other, whatever their ends.
   std::optional<Coincidence> coincide(const Piece& a, const Piece& b, double tolerance) const {
-    std::array<double, 3> feet{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double t = a.data.domain.first + a.data.domain.length() * (0.25 + 0.25 * static_cast<double>(i));
+    int same_way = 0;
+    for (const double fraction : {0.25, 0.5, 0.75}) {
+      const double t = a.data.domain.first + fraction * a.data.domain.length();
       const std::optional<EdgeCurve::Foot> foot =
           edge_of(b).curve.nearest(edge_of(a).curve.at(t), b.data.domain, tolerance);
       if (!foot) return std::nullopt;
-      feet[i] = foot->t;
+      const double cosine = edge_of(a).curve.jet(t).tangent.dot(edge_of(b).curve.jet(foot->t).tangent);
+      same_way += cosine > 0.0 ? 1 : -1;
     }
     Coincidence found;
-    found.same_direction = feet[0] < feet[2];
-    if (!runs_along(a, b, tolerance, found) || !runs_along(b, a, tolerance, found)) return std::nullopt;
+    found.same_direction = same_way > 0;
+    const int steps = steps_along(a, b);
+    if (!runs_along(a, b, steps, tolerance, found) || !runs_along(b, a, (steps + 1) / 2, tolerance, found))
+      return std::nullopt;
     return found;
+  }
+
+  /// Two straight lines are farthest apart at their ends.
+  int steps_along(const Piece& a, const Piece& b) const {
+    const int first = edge_of(a).curve.leg_count(a.data.domain);
+    const int second = edge_of(b).curve.leg_count(b.data.domain);
+    const bool straight = edge_of(a).curve.has_straight_legs() && edge_of(b).curve.has_straight_legs();
+    if (first == 1 && second == 1 && straight) return 1;
+    return std::clamp(std::max(first, second), 4, 24);
   }
 
   double reach_of(const Piece& a, const Piece& b) const {
     return std::max(finest_, std::min(tolerance_, 0.25 * std::min(a.data.length, b.data.length)));
   }
 
+  /// Pieces that coincide; if they are two, how.
+  struct Group {
+    std::vector<int> pieces;
+    std::optional<Coincidence> found;
+  };
+
   /// Open pieces that coincide at this level, in groups of two and more.
-  std::vector<std::vector<int>> coincident_groups() const {
+  std::vector<Group> coincident_groups() const {
     std::vector<std::tuple<int, int, int>> by_ends;
     for (const int index : open_pieces()) {
       const auto [low, high] = std::minmax({from(pieces_[slot(index)]), to(pieces_[slot(index)])});
       by_ends.emplace_back(low, high, index);
     }
     std::ranges::sort(by_ends);
-    std::vector<std::vector<int>> groups;
+    std::vector<Group> groups;
     std::vector<int> candidates;
     for (std::size_t i = 0; i < by_ends.size(); ++i) {
       const auto& [low, high, index] = by_ends[i];
@@ -407,21 +431,23 @@ class Matcher {
   }
 
   /// Splits pieces between the same vertices into those that run along each other.
-  void append_groups(std::vector<int> candidates, std::vector<std::vector<int>>& groups) const {
+  void append_groups(std::vector<int> candidates, std::vector<Group>& groups) const {
     while (candidates.size() > 1) {
-      std::vector<int> group{candidates.back()};
-      candidates.pop_back();
-      for (std::size_t next = 0; next < group.size(); ++next) {
-        const Piece& own = pieces_[slot(group[next])];
+      Group group{{candidates.front()}, std::nullopt};
+      candidates.erase(candidates.begin());
+      for (std::size_t next = 0; next < group.pieces.size(); ++next) {
+        const Piece& own = pieces_[slot(group.pieces[next])];
         const auto apart = [&](int other) {
-          return !coincide(own, pieces_[slot(other)], reach_of(own, pieces_[slot(other)]));
+          const Piece& piece = pieces_[slot(other)];
+          const std::optional<Coincidence> found = coincide(own, piece, reach_of(own, piece));
+          if (found) group.found = found;
+          return !found;
         };
         const auto joined = std::stable_partition(candidates.begin(), candidates.end(), apart);
-        group.insert(group.end(), joined, candidates.end());
+        group.pieces.insert(group.pieces.end(), joined, candidates.end());
         candidates.erase(joined, candidates.end());
       }
-      std::ranges::sort(group);
-      if (group.size() > 1) groups.push_back(std::move(group));
+      if (group.pieces.size() > 1) groups.push_back(std::move(group));
     }
   }
 
@@ -435,6 +461,8 @@ class Matcher {
 
   void join(int a, int b, const Coincidence& found) {
     pieces_[slot(a)].state = pieces_[slot(b)].state = Piece::State::joined;
+    pieces_[slot(a)].partner = b;
+    pieces_[slot(b)].partner = a;
     joints_.push_back({a, b, found.same_direction, found.gap});
     record_gap(found.gap, found.place);
     largest_tolerance_ = std::max(largest_tolerance_, tolerance_);
@@ -461,7 +489,7 @@ class Matcher {
     }
   }
 
-  /// Pieces are whole edges still. Their ends become one, however far apart.
+  /// Pieces are whole edges still.
   void join_shared(int a, int b) {
     const Piece& first = pieces_[slot(a)];
     const Piece& second = pieces_[slot(b)];
@@ -472,6 +500,9 @@ class Matcher {
     const std::array<std::pair<int, int>, 2> ends{std::pair{first.data.from, same ? second.data.from : second.data.to},
                                                   std::pair{first.data.to, same ? second.data.to : second.data.from}};
     for (const auto& [x, y] : ends) {
+      if ((vertices_.point(vertices_.root(x)) - vertices_.point(vertices_.root(y))).norm() > 2.0 * tolerance) return;
+    }
+    for (const auto& [x, y] : ends) {
       if (vertices_.root(x) != vertices_.root(y)) vertices_.unite(vertices_.root(x), vertices_.root(y));
     }
     join(a, b, *found);
@@ -480,20 +511,36 @@ class Matcher {
   // --- Edges of more than two patches -----------------------------------------------------------------------------
 
   void resolve_fans() {
-    std::vector<std::vector<int>> fans = coincident_groups();
-    std::erase_if(fans, [](const std::vector<int>& fan) { return fan.size() == 2; });
-    while (!fans.empty()) {
-      SignedComponents components(static_cast<int>(boundary_.patches.size()));
-      for (const EdgeJoint& joint : joints_)
-        components.unite(patch_of(joint.first), patch_of(joint.second), joint.same_direction ? -1 : 1);
-      const std::size_t resolved = std::erase_if(fans, [&](const std::vector<int>& fan) {
-        const auto pairs = pair_fan(leaves_of(fan, components));
-        if (!pairs) return false;
-        for (const auto& [a, b] : *pairs) join(fan[slot(a)], fan[slot(b)]);
-        return true;
-      });
-      if (resolved == 0) refuse(fans.front());
+    std::vector<std::vector<int>> fans;
+    for (Group& group : coincident_groups()) {
+      if (group.pieces.size() > 2) fans.push_back(std::move(group.pieces));
     }
+    while (!fans.empty()) {
+      const SignedComponents components = patch_components();
+      const std::size_t resolved = std::erase_if(
+          fans, [&](const std::vector<int>& fan) { return join_pairs(fan, pair_fan(leaves_of(fan, components))); });
+      if (resolved > 0) continue;
+      // One choice at a time: the others follow from it.
+      const auto touching = std::ranges::find_if(fans, [&](const std::vector<int>& fan) {
+        return join_pairs(fan, pair_touching_faces(leaves_of(fan, components)));
+      });
+      if (touching == fans.end()) refuse(fans.front());
+      fans.erase(touching);
+    }
+  }
+
+  /// Patches joined so far.
+  SignedComponents patch_components() const {
+    SignedComponents components(static_cast<int>(boundary_.patches.size()));
+    for (const EdgeJoint& joint : joints_)
+      components.unite(patch_of(joint.first), patch_of(joint.second), joint.same_direction ? -1 : 1);
+    return components;
+  }
+
+  bool join_pairs(const std::vector<int>& fan, const std::optional<std::vector<std::pair<int, int>>>& pairs) {
+    if (!pairs) return false;
+    for (const auto& [a, b] : *pairs) join(fan[slot(a)], fan[slot(b)]);
+    return true;
   }
 
   std::vector<FanLeaf> leaves_of(const std::vector<int>& fan, const SignedComponents& components) const {
@@ -554,9 +601,11 @@ class Matcher {
       piece.to = vertex_number(to(pieces_[i]));
       matching.pieces.push_back(piece);
     }
-    for (const EdgeJoint& joint : joints_)
-      matching.joints.push_back(
-          {numbers[slot(joint.first)], numbers[slot(joint.second)], joint.same_direction, joint.gap});
+    for (const EdgeJoint& joint : joints_) {
+      const std::array<int, 2> sides{numbers[slot(joint.first)], numbers[slot(joint.second)]};
+      if (sides[0] >= 0 && sides[1] >= 0)
+        matching.joints.push_back({sides[0], sides[1], joint.same_direction, joint.gap});
+    }
     matching.largest_gap = largest_gap_;
     matching.largest_gap_place = largest_gap_place_;
     matching.largest_tolerance = largest_tolerance_;
