@@ -189,8 +189,8 @@ std::vector<ElementPiece<Dim>> pieces_of(const geometry::ElementTable<Dim>& tabl
   std::vector<ElementPiece<Dim>> pieces;
   pieces.reserve(elements.size());
   for (const geometry::BezierElement<Dim>& element : elements) {
-    ElementPiece<Dim> piece = whole_element(table, element);
-    if (!piece.empty()) pieces.push_back(std::move(piece));
+    for (ElementPiece<Dim>& piece : pieces_of_element(table, element, CutForm::region))
+      pieces.push_back(std::move(piece));
   }
   return pieces;
 }

@@ -59,7 +59,30 @@ void keep_part(ElementPiece<Dim>& piece, CutRegion region) {
 }  // namespace
 
 template <int Dim>
+std::vector<ElementPiece<Dim>> pieces_of_element(const geometry::ElementTable<Dim>& table,
+                                                 const geometry::BezierElement<Dim>& element, CutForm form) {
+  std::vector<ElementPiece<Dim>> pieces;
+  if (form == CutForm::sectors && element.is_cut()) {
+    for (Sector& sector : sectors_of(table.regions[static_cast<std::size_t>(element.region)])) {
+      pieces.push_back({&element, table.nets.data() + element.offset, {}, 0});
+      pieces.back().sector = std::make_shared<const Sector>(std::move(sector));
+    }
+  } else if (ElementPiece<Dim> piece = whole_element(table, element); !piece.empty()) {
+    pieces.push_back(std::move(piece));
+  }
+  return pieces;
+}
+
+template <int Dim>
 std::pair<ElementPiece<Dim>, ElementPiece<Dim>> bisect(const ElementPiece<Dim>& piece, int direction) {
+  if (piece.sector) {
+    std::pair<ElementPiece<Dim>, ElementPiece<Dim>> halves{piece, piece};
+    auto [first, second] = bisect(*piece.sector, direction);
+    halves.first.sector = std::make_shared<const Sector>(std::move(first));
+    halves.second.sector = std::make_shared<const Sector>(std::move(second));
+    halves.first.depth = halves.second.depth = piece.depth + 1;
+    return halves;
+  }
   const std::array<int, Dim - 1> degrees = degrees_of(*piece.element);
   const auto size = static_cast<std::size_t>(piece.element->control_point_count() * (Dim + 1));
   auto [first, second] = geometry::subdivide({piece.net(), size}, Dim + 1, degrees, direction);
@@ -114,6 +137,10 @@ Orders<Dim - 1> expected_orders(const ElementPiece<Dim>& piece, double tolerance
 
 template std::pair<ElementPiece<2>, ElementPiece<2>> bisect(const ElementPiece<2>&, int);
 template std::pair<ElementPiece<3>, ElementPiece<3>> bisect(const ElementPiece<3>&, int);
+template std::vector<ElementPiece<2>> pieces_of_element(const geometry::ElementTable<2>&,
+                                                        const geometry::BezierElement<2>&, CutForm);
+template std::vector<ElementPiece<3>> pieces_of_element(const geometry::ElementTable<3>&,
+                                                        const geometry::BezierElement<3>&, CutForm);
 template bool is_affine(const geometry::ElementTable<2>&, const geometry::BezierElement<2>&);
 template bool is_affine(const geometry::ElementTable<3>&, const geometry::BezierElement<3>&);
 template Orders<1> expected_orders(const ElementPiece<2>&, double);

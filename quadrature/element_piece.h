@@ -12,6 +12,7 @@
 #include "geometry/bezier/element_table.h"
 #include "quadrature/cut_region.h"
 #include "quadrature/element_sums.h"
+#include "quadrature/sector.h"
 
 namespace isorim::quadrature {
 
@@ -26,6 +27,8 @@ struct ElementPiece {
   int depth = 0;
   /// What is kept of the piece; null if all of it is. Of surfaces only.
   std::shared_ptr<const CutRegion> region = nullptr;
+  /// If set, the piece is this sector of the element's cell, and its directions are the curve and the rays.
+  std::shared_ptr<const Sector> sector = nullptr;
 
   const double* net() const { return own_net.empty() ? element_net : own_net.data(); }
   bool is_cut() const { return region != nullptr; }
@@ -41,6 +44,12 @@ ElementPiece<Dim> whole_element(const geometry::ElementTable<Dim>& table, const 
     piece.region = std::make_shared<CutRegion>(table.regions[static_cast<std::size_t>(element.region)]);
   return piece;
 }
+
+/// The same as pieces: the element, if something of it is kept; or, if it is cut, its sectors.
+enum class CutForm { region, sectors };
+template <int Dim>
+std::vector<ElementPiece<Dim>> pieces_of_element(const geometry::ElementTable<Dim>& table,
+                                                 const geometry::BezierElement<Dim>& element, CutForm form);
 
 /// The tensor Gauss-Legendre nodes that a rule of the given orders uses: on a cut piece twice as many, because there
 /// n nodes integrate polynomials of degree n - 1 exactly, not 2 n - 1. So a rule of n points means the same accuracy on

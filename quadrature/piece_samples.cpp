@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "quadrature/bernstein.h"
 #include "quadrature/gauss_legendre.h"
@@ -106,6 +107,14 @@ void set_weights(const ElementPiece<Dim>& piece, const Orders<Dim - 1>& nodes, s
 
 template <int Dim>
 void sample_piece(const ElementPiece<Dim>& piece, const Orders<Dim - 1>& orders, PieceSamples<Dim>& samples) {
+  if constexpr (Dim == 3) {
+    if (piece.sector) {
+      SectorRule rule = sector_rule(*piece.sector, orders);
+      samples = sample_at(piece, rule.places);
+      samples.weights = std::move(rule.weights);
+      return;
+    }
+  }
   const Orders<Dim - 1> nodes = nodes_of_rule(piece, orders);
   set_weights(piece, nodes, samples.weights);
   std::array<const BernsteinTable*, Dim - 1> basis;

@@ -17,8 +17,8 @@
 ///
 /// is the integral over D of the polynomial that interpolates g at the nodes: exact for polynomials of a degree below
 /// the number of nodes in each direction, spectrally accurate for what is analytic on the cell, whatever D is. (Product
-/// quadrature: Sloan & Smith, Numer. Math. 34, 1980. Moments from the boundary: Sommariva & Vianello, BIT Numer. Math.
-/// 49, 2009; Gunderman, Weiss & Evans, Comput. Methods Appl. Mech. Eng. 375, 2021.)
+/// integration: Sloan & Smith 1978; moments from the boundary: Sommariva & Vianello 2009; Gunderman, Weiss & Evans
+/// 2021; see the README.)
 namespace isorim::quadrature {
 
 /// The moments m_ij of a region, i < counts[0], j < counts[1].

@@ -244,8 +244,8 @@ template <int Dim, template <int> class Evaluator>
 class Integration {
  public:
   Integration(const geometry::ElementTable<Dim>& table, const IntegrandFactory<Dim>& factory,
-              const geometry::Point<Dim>& pole, const Options& options)
-      : table_(table), factory_(factory), pole_(pole), options_(options) {
+              const geometry::Point<Dim>& pole, const Options& options, CutForm cut_form)
+      : table_(table), factory_(factory), pole_(pole), options_(options), cut_form_(cut_form) {
     integrands_.resize(static_cast<std::size_t>(thread_count(options.threads)));
   }
 
@@ -292,8 +292,8 @@ class Integration {
       const Evaluator<Dim> evaluator(integrand_of(thread), pole_, count, target, options_.tolerance);
       std::vector<typename Evaluator<Dim>::Piece> pieces;
       for (std::size_t e = task * elements_per_task; e < std::min(count, (task + 1) * elements_per_task); ++e) {
-        ElementPiece<Dim> piece = whole_element(table_, table_.elements[e]);
-        if (!piece.empty()) pieces.push_back(Evaluator<Dim>::make_piece(std::move(piece)));
+        for (ElementPiece<Dim>& piece : pieces_of_element(table_, table_.elements[e], cut_form_))
+          pieces.push_back(Evaluator<Dim>::make_piece(std::move(piece)));
       }
       AdaptiveIntegrator<Evaluator<Dim>> integrator(evaluator, options_, bisection_share(options_, tasks));
       totals[task] = step(integrator, std::move(pieces));
@@ -308,8 +308,22 @@ class Integration {
   const IntegrandFactory<Dim>& factory_;
   geometry::Point<Dim> pole_;
   const Options& options_;
+  CutForm cut_form_;
   std::vector<Integrand<Dim>> integrands_;
 };
+
+/// Rules for cut elements have points outside what is kept. If the integrand is not finite there, sectors are tried,
+/// whose points mostly lie inside.
+template <int Dim, template <int> class Evaluator>
+IntegralResult integrate(const geometry::ElementTable<Dim>& table, const IntegrandFactory<Dim>& factory,
+                         const geometry::Point<Dim>& pole, const Options& options) {
+  try {
+    return Integration<Dim, Evaluator>(table, factory, pole, options, CutForm::region).run();
+  } catch (const NumericalError&) {
+    if (table.regions.empty()) throw;
+  }
+  return Integration<Dim, Evaluator>(table, factory, pole, options, CutForm::sectors).run();
+}
 
 }  // namespace
 
@@ -318,7 +332,7 @@ IntegralResult integrate_over_domain(const geometry::ElementTable<Dim>& table, c
                                      const std::optional<geometry::Point<Dim>>& pole, const Options& options) {
   const geometry::Point<Dim> centre = pole ? *pole : default_pole(table);
   try {
-    return Integration<Dim, ConeEvaluator>(table, integrand, centre, options).run();
+    return integrate<Dim, ConeEvaluator>(table, integrand, centre, options);
   } catch (NumericalError& error) {
     const std::string where = is_star_shaped_about(table, centre)
                                   ? "the domain is star-shaped about it, so the point lies in the domain"
@@ -332,7 +346,7 @@ IntegralResult integrate_over_domain(const geometry::ElementTable<Dim>& table, c
 template <int Dim>
 IntegralResult integrate_over_boundary(const geometry::ElementTable<Dim>& table, const IntegrandFactory<Dim>& integrand,
                                        const Options& options) {
-  return Integration<Dim, BoundaryEvaluator>(table, integrand, geometry::Point<Dim>::Zero(), options).run();
+  return integrate<Dim, BoundaryEvaluator>(table, integrand, geometry::Point<Dim>::Zero(), options);
 }
 
 template IntegralResult integrate_over_domain<2>(const geometry::ElementTable<2>&, const IntegrandFactory<2>&,

@@ -50,6 +50,9 @@ geometry::Point<Dim> default_pole(const geometry::ElementTable<Dim>& table);
 /// larger. The integrand is met on the rays from the pole to the boundary; where the domain is not star-shaped about
 /// the pole these leave it, so the integrand must be defined there too. Throws NumericalError, naming the point and
 /// whether the boundary is star-shaped about the pole, if a value is not finite.
+///
+/// Cut elements: rules with points all over the element are tried first; should the integrand not be finite at some,
+/// rays in the element's cell, which stay in what is kept if that is star-shaped about some point of the cell.
 template <int Dim>
 IntegralResult integrate_over_domain(const geometry::ElementTable<Dim>& table, const IntegrandFactory<Dim>& integrand,
                                      const std::optional<geometry::Point<Dim>>& pole, const Options& options);

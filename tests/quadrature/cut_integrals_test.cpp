@@ -65,6 +65,33 @@ TEST(CutBoundaryIntegral, SingularityInAHole) {
   EXPECT_LT(result.evaluations, 2'000'000);
 }
 
+// A disc of radius a = 1/4 cut out of a plane, and sqrt(a^2 + e - r^2), which is defined on little more than that.
+TEST(CutBoundaryIntegral, IntegrandDefinedOnWhatIsKeptOnly) {
+  geometry::Boundary<3> disc;
+  disc.patches.push_back(testing::trimmed(geometry::box({1.0, 1.0, 1.0}).patches.back(),
+                                          {testing::loop(geometry::circle_curve(0.25, geometry::Point2(0.6, 0.6)))}));
+  const auto table = bezier_elements(disc);
+  const Point3 centre = Point3(0.6, 0.6, 1.0);
+  const double e = 1e-3;
+  const auto f =
+      integrand([=](const Point3& x, const Vector3&) { return std::sqrt(0.0625 + e - (x - centre).squaredNorm()); });
+  // 2 pi / 3 ((a^2 + e)^(3/2) - e^(3/2)).
+  const double exact = 2.0 * pi / 3.0 * (std::pow(0.0625 + e, 1.5) - std::pow(e, 1.5));
+  expect_integral(integrate_over_boundary<3>(table, f, {}), exact, 1e-12);
+}
+
+// Nor are there rays that avoid the place where this is undefined.
+TEST(CutBoundaryIntegral, UndefinedIntegrandIsNoticed) {
+  const auto plate = patch_of(testing::box_with_round_hole(0.5, 1.0), "z_max");
+  const auto f = integrand([](const Point3& x, const Vector3&) { return std::sqrt(x.head<2>().norm() - 0.49); });
+  try {
+    integrate_over_boundary<3>(plate, f, {});
+    FAIL();
+  } catch (const NumericalError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("the integrand is nan at ("));
+  }
+}
+
 TEST(CutDomainIntegral, PolynomialAndExponentialOverABoxWithAHole) {
   const auto solid = bezier_elements(testing::box_with_round_hole(0.5, 1.5));
   // int x^2 z: 1.125 (4/3 - pi / 64).
