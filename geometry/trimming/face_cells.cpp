@@ -188,12 +188,11 @@ int CellWalk::walk(int coverage, std::span<const CutPiece* const> pieces) {
   return right_side;
 }
 
-/// For a cell without curves inside.
+/// For a cell without curves inside that is not covered once or never: only where that can be a small overlap.
 void CellWalk::require_single_cover() const {
   constexpr double negligible = TrimmedSurface::parameter_tolerance;
   const int coverage = edges_.front().coverage;
-  if (coverage == 1 || u_.length() <= negligible * grid_.u.length() || v_.length() <= negligible * grid_.v.length())
-    return;
+  if (u_.length() <= negligible * grid_.u.length() || v_.length() <= negligible * grid_.v.length()) return;
   throw GeometryError(
       fmt::format("the loops run {} times around ({:.9g}, {:.9g}) in the surface's parameters; expected "
                   "once or never (loops overlap or run the wrong way round)",
@@ -228,9 +227,7 @@ std::array<Interval, 2> CellWalk::rectangle(const Box& box) const {
 }
 
 std::int32_t CellWalk::conclude(std::span<const CutPiece* const> pieces, std::vector<CellRegion>& regions) const {
-  if (pieces.empty() && edges_.empty()) return FaceCells::outside;
   if (pieces.empty()) require_single_cover();
-  if (pieces.empty() && edges_.front().coverage == 1) return FaceCells::whole;
   const Box box = bounding_box(pieces);
   const Vector2 rounding = 4.0 * Vector2(grid_.u.tolerance(), grid_.v.tolerance());
   if (((box.upper - box.lower).array() <= rounding.array()).any()) return FaceCells::outside;
@@ -315,9 +312,14 @@ FaceCells assemble_cells(std::span<const CutPiece> pieces, const ParameterGrid& 
     int coverage = -*run++;
     for (int column = 0; column < cells.columns; ++column) {
       const std::span<const CutPiece* const> inside = sorted.take(column, row, cells.columns);
-      cell.move_to(column, row);
-      coverage = cell.walk(coverage, inside) - *run++;
-      cells.state.push_back(cell.conclude(inside, cells.regions));
+      if (inside.empty() && (coverage == 0 || coverage == 1)) {
+        cells.state.push_back(coverage == 0 ? FaceCells::outside : FaceCells::whole);
+      } else {
+        cell.move_to(column, row);
+        coverage = cell.walk(coverage, inside);
+        cells.state.push_back(cell.conclude(inside, cells.regions));
+      }
+      coverage -= *run++;
     }
     if (coverage != 0)
       throw NumericalError(fmt::format("trimming: the curves in row {} of the surface's knot spans do not close", row));

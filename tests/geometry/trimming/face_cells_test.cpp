@@ -1,6 +1,7 @@
 #include "geometry/trimming/face_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 
@@ -21,6 +22,7 @@ using testing::plane_surface;
 using testing::polygon;
 using testing::Random;
 using testing::reversed;
+using testing::transformed;
 
 const std::vector<double> thirds{0.0, 0.1 + 0.2, 0.5, 0.6, 1.0};
 const std::vector<double> quarters{0.0, 0.25, 0.5, 0.75, 1.0};
@@ -214,6 +216,195 @@ TEST(FaceCells, RandomBlobsWithHoles) {
     for (const TrimLoop& loop : loops) inverse.push_back(reversed(loop));
     expect_sound({surface, inverse}, where + " inverse");
   }
+}
+
+TEST(FaceCells, NearlyTouchingKnotLinesAndCorners) {
+  // Circles whose extreme points lie beside a knot line, and triangles whose corners lie beside a grid point, by
+  // anything from nothing to a visible amount.
+  const NurbsSurface<3> surface = plane_surface(2, thirds, quarters);
+  for (const double size : {0.0, 1e-17, 1e-16, 3e-16, 1e-15, 3e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4})
+    for (const double sign : {-1.0, 1.0}) {
+      const double off = sign * size;
+      const std::string where = "off by " + std::to_string(off * 1e16) + "e-16";
+      expect_sound({surface, {circle_loop(0.25 + off, {0.5, 0.5})}}, where);
+      expect_sound({surface, {circle_loop(0.25, {0.5 + off, 0.5 - off})}}, where);
+      expect_sound({surface, {domain_loop(surface), reversed(circle_loop(0.25, {0.5 - off, 0.5 + off}))}}, where);
+      expect_sound({surface, {circle_loop(std::sqrt(0.05 + off * off) / 2.0, {0.55, 0.375})}}, where);
+      for (const double other : {0.0, 1e-16, -1e-15, 1e-9}) {
+        const Point2 corner(0.5 + off, 0.5 + other);
+        expect_sound({surface, {polygon({{0.2, 0.1}, {0.9, 0.3}, corner})}}, where);
+        expect_sound({surface, {polygon({{0.2, 0.1}, corner, {0.1, 0.9}})}}, where);
+        expect_sound({surface, {polygon({corner, {0.9, 0.3}, {0.9, 0.9}})}}, where);
+        expect_sound({surface, {polygon({{0.1, 0.1}, {0.9, 0.1 + off}, {0.9, 0.9}, {0.1 + other, 0.9}})}}, where);
+        // An edge along a knot line, nearly.
+        expect_sound({surface, {polygon({{0.5 + off, 0.1}, {0.9, 0.3}, {0.5 - other, 0.9}})}}, where);
+        expect_sound({surface, {polygon({{0.1, 0.5 - off}, {0.9, 0.5 + other}, {0.5, 0.9}})}}, where);
+      }
+    }
+}
+
+TEST(FaceCells, DomainsFarFromTheOriginSmallAndStretched) {
+  Random random(6);
+  for (int trial = 0; trial < 300; ++trial) {
+    AffineMap<2> map;
+    Vector2 relative_rounding;
+    for (Eigen::Index d = 0; d < 2; ++d) {
+      map.linear(d, d) = std::pow(10.0, random.integer(-6, 6));
+      map.translation[d] = map.linear(d, d) * (random.integer(0, 1) == 0 ? 0.0 : random.real(-1e3, 1e3));
+      relative_rounding[d] = 1.0 + std::abs(map.translation[d]) / map.linear(d, d);
+    }
+    const auto mapped = [&](const std::vector<double>& lines, Eigen::Index d) {
+      std::vector<double> result;
+      for (const double line : lines) result.push_back(map.translation[d] + map.linear(d, d) * line);
+      return result;
+    };
+    const NurbsSurface<3> surface = plane_surface(2, mapped(thirds, 0), mapped(quarters, 1));
+    std::vector<TrimLoop> loops{transformed(blob(random, {0.5, 0.5}, 0.5, random.integer(1, 4)), map)};
+    if (trial % 2 == 0) loops.push_back(reversed(transformed(circle_loop(0.05, {0.5, 0.5}), map)));
+    const TrimmedSurface face(surface, loops);
+    const ElementTable<3> table = elements_of(face);
+    Exponential g;
+    g.a = 0.7 / map.linear(0, 0);
+    g.b = -0.4 / map.linear(1, 1);
+    g.origin = map.translation;
+    GreenSum parts;
+    for (const BezierElement<3>& element : table.elements) {
+      parts += green_integral(table, element, g);
+      if (element.is_cut()) expect_closed(table.regions[static_cast<std::size_t>(element.region)], "stretched");
+    }
+    const GreenSum whole = green_integral(face.loops(), g);
+    EXPECT_NEAR(parts.value, whole.value, 2e-15 * relative_rounding.maxCoeff() * (parts.magnitude + whole.magnitude))
+        << trial;
+  }
+}
+
+TEST(FaceCells, GapsAreClosedByStraightLinesAndExcursionsCutOff) {
+  Random random(7);
+  const NurbsSurface<3> surface = plane_surface(2, thirds, quarters);
+  for (int trial = 0; trial < 300; ++trial) {
+    const double reach = std::pow(10.0, random.real(-16.0, -6.1));
+    std::vector<Point2> corners{{0.0, 0.0}, {0.5, 0.0}, {1.0, 0.0}, {1.0, 0.5}, {1.0, 1.0}, {0.3, 1.0}, {0.0, 0.25}};
+    TrimLoop loop = polygon(corners);
+    for (NurbsCurve<2>& curve : loop.curves) {
+      HomogeneousPoints<2> net = curve.homogeneous();
+      for (Eigen::Index i = 0; i < 2; ++i) net.col(i).head<2>() += 0.5 * reach * Vector2::Random();
+      curve = NurbsCurve<2>(curve.knots(), net);
+    }
+    const TrimmedSurface face(surface, {loop});
+    const ElementTable<3> table = elements_of(face);
+    const Exponential g;
+    GreenSum parts;
+    for (const BezierElement<3>& element : table.elements) {
+      parts += green_integral(table, element, g);
+      EXPECT_GE(element.domain[0].first, 0.0);
+      EXPECT_LE(element.domain[0].last, 1.0);
+      EXPECT_GE(element.domain[1].first, 0.0);
+      EXPECT_LE(element.domain[1].last, 1.0);
+      if (element.is_cut()) expect_closed(table.regions[static_cast<std::size_t>(element.region)], "gaps");
+    }
+    const GreenSum exact = green_integral(std::vector<TrimLoop>{polygon(corners)}, g);
+    EXPECT_NEAR(parts.value, exact.value, 4.0 * reach + 1e-14) << trial;
+  }
+}
+
+TEST(FaceCells, LoopsThatTouch) {
+  const NurbsSurface<3> surface = plane_surface(2, thirds, quarters);
+  const std::vector<std::vector<TrimLoop>> faces{
+      // A hole that touches the outer loop from inside, on and off a knot line.
+      {circle_loop(0.5, {0.5, 0.5}), reversed(circle_loop(0.25, {0.25, 0.5}))},
+      {circle_loop(0.4, {0.5, 0.5}), reversed(circle_loop(0.1, {0.5 + 0.3 * 0.6, 0.5 + 0.3 * 0.8}))},
+      // Two holes that touch each other at a corner of cells; two islands that do.
+      {domain_loop(surface), reversed(circle_loop(0.2, {0.3, 0.5})), reversed(circle_loop(0.2, {0.7, 0.5}))},
+      {circle_loop(0.2, {0.3, 0.5}), circle_loop(0.2, {0.7, 0.5})},
+      // A figure of eight as one loop that passes twice through the same corner of cells.
+      {polygon({{0.5, 0.5}, {0.9, 0.2}, {0.9, 0.8}, {0.5, 0.5}, {0.1, 0.8}, {0.1, 0.2}})},
+      // Checkerboard: cells that touch at their corners only, as one loop.
+      {polygon({{0.0, 0.0}, {0.5, 0.0}, {0.5, 0.5}, {1.0, 0.5}, {1.0, 1.0}, {0.5, 1.0}, {0.5, 0.5}, {0.0, 0.5}})},
+      // A hole within one cell, an island in the hole.
+      {domain_loop(surface), reversed(circle_loop(0.04, {0.55, 0.625})), circle_loop(0.02, {0.55, 0.625})},
+      // A hole that is a cell, and one that touches it along an edge.
+      {domain_loop(surface), reversed(polygon({{0.5, 0.5}, {0.6, 0.5}, {0.6, 0.75}, {0.5, 0.75}})),
+       reversed(polygon({{0.6, 0.55}, {0.7, 0.6}, {0.6, 0.65}}))},
+      // A slit: out and back along the same line; and one along a knot line.
+      {polygon({{0, 0}, {1, 0}, {1, 1}, {0.45, 1}, {0.45, 0.3}, {0.45, 1}, {0, 1}})},
+      {polygon({{0, 0}, {1, 0}, {1, 1}, {0.5, 1}, {0.5, 0.3}, {0.5, 1}, {0, 1}})},
+      // A strip along a knot line, on either side of it.
+      {polygon({{0.5, 0.1}, {0.5, 0.9}, {0.45, 0.9}, {0.45, 0.1}})},
+      {polygon({{0.5, 0.1}, {0.55, 0.1}, {0.55, 0.9}, {0.5, 0.9}})}};
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    expect_sound({surface, faces[i]}, "touching " + std::to_string(i), 200);
+}
+
+TEST(FaceCells, HighDegreesAndManySpans) {
+  Random random(8);
+  for (int trial = 0; trial < 100; ++trial) {
+    std::vector<double> us{0.0};
+    std::vector<double> vs{0.0};
+    for (int i = random.integer(0, 40); i-- > 0;) us.push_back(us.back() + random.real(1e-6, 1.0));
+    for (int i = random.integer(0, 40); i-- > 0;) vs.push_back(vs.back() + random.real(1e-6, 1.0));
+    for (std::vector<double>* lines : {&us, &vs}) {
+      lines->push_back(lines->back() + 0.5);
+      for (double& line : *lines) line /= lines->back();
+    }
+    us.back() = vs.back() = 1.0;
+    const NurbsSurface<3> surface = plane_surface(1, us, vs);
+    expect_sound({surface, {blob(random, {0.5, 0.5}, 0.5, random.integer(1, 10))}}, "grid " + std::to_string(trial),
+                 50);
+  }
+}
+
+/// The areas of the regions of the cells of a grid with one row of two columns, by column.
+std::array<double, 2> areas_by_column(const FaceCells& cells) {
+  std::array<double, 2> areas{};
+  for (int column = 0; column < 2; ++column) {
+    if (cells.at(column, 0) < 0) continue;
+    const CellRegion& kept = cells.regions[static_cast<std::size_t>(cells.at(column, 0))];
+    Boundary<2> boundary;
+    for (const HomogeneousPoints<2>& net : kept.region.curves)
+      boundary.patches.push_back({"curve", {KnotVector::bezier(static_cast<int>(net.cols()) - 1), net}});
+    areas[static_cast<std::size_t>(column)] = testing::measures(boundary).content * kept.u.length() * kept.v.length();
+  }
+  return areas;
+}
+
+TEST(FaceCells, OneMissedCrossingIsSeen) {
+  // A circle of which a segment lies beyond the knot line u = 0.6.
+  const NurbsSurface<3> surface = plane_surface(1, {0.0, 0.6, 1.0}, {0.0, 1.0});
+  const double r = 0.3;
+  const double d = 0.1;
+  const double segment = r * r * std::acos(d / r) - d * std::sqrt(r * r - d * d);
+  const double rest = std::numbers::pi * r * r - segment;
+  const ParameterGrid grid(surface);
+  std::vector<CutPiece> pieces = cut_at_knot_lines(std::vector<TrimLoop>{circle_loop(r, {0.5, 0.5})}, grid);
+  const std::array<double, 2> areas = areas_by_column(assemble_cells(pieces, grid));
+  EXPECT_NEAR(areas[0], rest, 1e-15);
+  EXPECT_NEAR(areas[1], segment, 1e-15);
+
+  // Where the curve leaves its cell and comes back unnoticed, the segment is counted to the wrong cell.
+  std::vector<CutPiece> misplaced = pieces;
+  for (CutPiece& piece : misplaced) piece.station[0] = 1;
+  const std::array<double, 2> wrong = areas_by_column(assemble_cells(misplaced, grid));
+  EXPECT_NEAR(wrong[0], rest + segment, 1e-15);
+  EXPECT_EQ(wrong[1], 0.0);
+
+  // Where one crossing alone is missed, the chains in the two cells do not close.
+  const auto crossing = std::ranges::find_if(
+      pieces, [](const CutPiece& piece) { return piece.station[0] == 1 && piece.end.u.is_on_line(); });
+  ASSERT_NE(crossing, pieces.end());
+  crossing->end = (crossing + 1)->end;
+  pieces.erase(crossing + 1);
+  EXPECT_THROW(assemble_cells(pieces, grid), NumericalError);
+}
+
+TEST(FaceCells, OverlappingAndWronglyDirectedLoopsAreRefused) {
+  const NurbsSurface<3> surface = plane_surface(2, quarters, quarters);
+  EXPECT_GEOMETRY_ERROR(
+      elements_of({surface, {domain_loop(surface), polygon({{0.2, 0.2}, {0.8, 0.2}, {0.8, 0.8}, {0.2, 0.8}})}}),
+      "patch \"face\": the loops run 2 times around");
+  EXPECT_GEOMETRY_ERROR(elements_of({surface,
+                                     {polygon({{0.0, 0.0}, {0.5, 0.0}, {0.5, 1.0}, {0.0, 1.0}}),
+                                      reversed(polygon({{0.6, 0.2}, {1.0, 0.2}, {1.0, 0.8}, {0.6, 0.8}}))}}),
+                        "run -1 times around (0.875, 0.375)");
 }
 
 }  // namespace

@@ -45,6 +45,12 @@ inline TrimLoop reversed(const TrimLoop& loop) {
   return result;
 }
 
+inline TrimLoop transformed(const TrimLoop& loop, const AffineMap<2>& map) {
+  TrimLoop result;
+  for (const NurbsCurve<2>& curve : loop.curves) result.curves.push_back(transform(curve, map));
+  return result;
+}
+
 inline TrimLoop circle_loop(double radius, const Point2& centre) {
   return {{circle(radius, centre)}};
 }
@@ -71,13 +77,15 @@ inline TrimLoop blob(Random& random, const Point2& centre, double radius, int de
   return {{NurbsCurve<2>::from_points(knots, points, weights)}};
 }
 
-/// g(u, v) = exp(a u + b v + c): its integral over what closed chains of curves enclose, by Green's theorem.
+/// g(u, v) = exp(a (u - u0) + b (v - v0)): its integral over what closed chains of curves enclose, by Green's theorem.
 struct Exponential {
   double a = 0.7;
   double b = -0.4;
-  double c = 0.0;
+  Point2 origin = Point2::Zero();
 
-  double operator()(const Point2& p) const { return std::exp(a * p.x() + b * p.y() + c); }
+  double in_u(double u) const { return std::exp(a * (u - origin.x())); }
+  double in_v(double v) const { return std::exp(b * (v - origin.y())); }
+  double operator()(const Point2& uv) const { return in_u(uv.x()) * in_v(uv.y()); }
 };
 
 /// The sum of the contributions and of their magnitudes (against which rounding is judged).
@@ -125,8 +133,7 @@ inline GreenSum green_integral(const ElementTable<3>& table, const BezierElement
       sum += green_integral(curve, g, u, v);
     return sum;
   }
-  const double value = (std::exp(g.a * u.last) - std::exp(g.a * u.first)) / g.a *
-                       (std::exp(g.b * v.last) - std::exp(g.b * v.first)) / g.b * std::exp(g.c);
+  const double value = (g.in_u(u.last) - g.in_u(u.first)) / g.a * (g.in_v(v.last) - g.in_v(v.first)) / g.b;
   return {value, std::abs(value)};
 }
 
