@@ -13,8 +13,8 @@ namespace {
 std::vector<PlanePiece> curve_pieces(const TrimLoop& loop) {
   std::vector<PlanePiece> pieces;
   for (const NurbsCurve<2>& curve : loop.curves)
-    for (BezierSegment& segment : bezier_segments({curve.knots(), curve.homogeneous()}))
-      pieces.emplace_back(std::move(segment.coefficients));
+    for (const BezierSegment& segment : bezier_segments({curve.knots(), curve.homogeneous()}))
+      pieces.emplace_back(segment.coefficients);
   return pieces;
 }
 

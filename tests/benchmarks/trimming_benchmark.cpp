@@ -56,7 +56,7 @@ Boundary<3> many_faces(int count) {
     std::vector<TrimLoop> loops{domain_loop(surface)};
     const int holes = static_cast<int>(random() % 5);
     for (int k = 0; k < holes; ++k) {
-      const Point2 centre(0.25 + 0.5 * (k % 2), 0.25 + 0.5 * (k / 2));
+      const Point2 centre(k % 2 == 0 ? 0.25 : 0.75, k < 2 ? 0.25 : 0.75);
       loops.push_back(hole(centre, {0.2, 0.2}, 3 + static_cast<int>(random() % 7)));
     }
     boundary.patches.push_back({"face", TrimmedSurface(surface, loops)});
