@@ -1,10 +1,14 @@
 #include "geometry/intersection/chebyshev_fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 
 #include <Eigen/LU>
+#include <fmt/format.h>
+
+#include "geometry/errors.h"
 
 namespace isorim::geometry {
 namespace {
@@ -82,7 +86,46 @@ void append_stretches(const std::function<double(double)>& function, Interval pa
   append_stretches(function, {part.middle(), part.last}, noise, stretches);
 }
 
+/// The largest distance between the interpolation points.
+double largest_distance(const std::function<Point2(double)>& curve, Interval part, const Points<2>& points) {
+  const int samples = 2 * static_cast<int>(points.cols()) + 1;
+  double distance = 0.0;
+  for (int k = 0; k < samples; ++k) {
+    const double t = (k + 0.5) / samples;
+    const Point2 fitted(evaluate(BernsteinCoefficients(points.row(0).transpose()), t),
+                        evaluate(BernsteinCoefficients(points.row(1).transpose()), t));
+    distance = std::max(distance, (fitted - curve(part.first + part.length() * t)).norm());
+  }
+  return distance;
+}
+
+void append_fits(const std::function<Point2(double)>& curve, Interval part, double tolerance,
+                 std::vector<NurbsCurve<2>>& pieces) {
+  for (const int degree : {1, 2, 3, 4, 6, 8, 10, 12, 14, largest_fit_degree}) {
+    Points<2> values(2, degree + 1);
+    for (int k = 0; k <= degree; ++k)
+      values.col(k) = curve(part.first + part.length() * chebyshev_points(degree)[static_cast<std::size_t>(k)]);
+    const Points<2> points = interpolate_bernstein(values);
+    if (largest_distance(curve, part, points) > tolerance) continue;
+    pieces.push_back(NurbsCurve<2>::from_points(KnotVector::bezier(degree), points));
+    return;
+  }
+  if (part.length() < 1e-3) {
+    const Point2 place = curve(part.middle());
+    throw GeometryError(fmt::format("a curve at ({:.9g}, {:.9g}) is not smooth enough to be met to {:.3g}", place.x(),
+                                    place.y(), tolerance));
+  }
+  append_fits(curve, {part.first, part.middle()}, tolerance, pieces);
+  append_fits(curve, {part.middle(), part.last}, tolerance, pieces);
+}
+
 }  // namespace
+
+std::vector<NurbsCurve<2>> fit_curve(const std::function<Point2(double)>& curve, double tolerance) {
+  std::vector<NurbsCurve<2>> pieces;
+  append_fits(curve, {0.0, 1.0}, tolerance, pieces);
+  return pieces;
+}
 
 const std::vector<double>& chebyshev_points(int n) {
   static const std::vector<std::vector<double>> points = [] {

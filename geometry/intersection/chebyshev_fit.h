@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "geometry/intersection/bernstein_polynomial.h"
+#include "geometry/nurbs/curve.h"
 #include "geometry/vocabulary.h"
 
 /// Polynomials in Bernstein form through values at Chebyshev points: smooth functions are met to rounding by moderate
@@ -21,6 +22,11 @@ const std::vector<double>& chebyshev_points(int n);
 /// The Bernstein coefficients of degree n through the values at chebyshev_points(n): `values` has n + 1 columns, one
 /// row a component. End values come back bit for bit.
 Eigen::MatrixXd interpolate_bernstein(const Eigen::Ref<const Eigen::MatrixXd>& values);
+
+/// Polynomial Bézier curves over [0, 1], one after the other, that meet a smooth curve to within `tolerance`; the curve
+/// is given on [0, 1]. Inner ends are points of the curve. Throws GeometryError, with the place, if parts a thousandth
+/// long still miss it.
+std::vector<NurbsCurve<2>> fit_curve(const std::function<Point2(double)>& curve, double tolerance);
 
 /// The sign chart, on [0, 1], of a function that is analytic there: by polynomials on parts small enough that they
 /// meet it to within `noise`.

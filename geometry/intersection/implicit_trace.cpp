@@ -100,14 +100,10 @@ Point2 ImplicitTrace::from_unit_square(int element, const Point2& point) const {
 }
 
 int ImplicitTrace::sign_everywhere() const {
-  bool some_positive = false;
-  bool some_negative = false;
-  for (const ElementFunction& function : functions_) {
-    if (function.vanishes) return 0;
-    some_positive = some_positive || function.grid.maxCoeff() > function.coincidence;
-    some_negative = some_negative || function.grid.minCoeff() < -function.coincidence;
-  }
-  return some_positive == some_negative ? 0 : some_positive ? 1 : -1;
+  const auto is_negative = [](const ElementFunction& f) { return f.whole.maxCoeff() < -f.coincidence; };
+  const auto is_not_negative = [](const ElementFunction& f) { return f.whole.minCoeff() >= -f.coincidence; };
+  if (std::all_of(functions_.begin(), functions_.end(), is_negative)) return -1;
+  return std::all_of(functions_.begin(), functions_.end(), is_not_negative) ? 1 : 0;
 }
 
 void ImplicitTrace::trace_element(int element, std::vector<SideCharts>& charts) {

@@ -41,8 +41,8 @@ class ImplicitTrace {
 
   const std::vector<TracedCurve>& curves() const { return curves_; }
 
-  /// What the Bernstein coefficients say of the whole surface: +1, -1, or 0 if both signs may occur. 1 and -1 allow F
-  /// to vanish at places.
+  /// What the Bernstein coefficients say of the whole surface: -1 if F is negative everywhere, +1 if it is nowhere
+  /// negative (beyond the tolerance), 0 otherwise.
   int sign_everywhere() const;
 
   const std::vector<double>& breakpoints_u() const { return breakpoints_u_; }

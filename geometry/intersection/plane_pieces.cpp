@@ -66,9 +66,10 @@ AreaEstimate piece_area(const PlanePiece& piece, const Point2& origin, int depth
 /// The angle that the piece subtends at the point, or nothing if the point is too near.
 std::optional<double> subtended_angle(const PlanePiece& piece, const Point2& point, double resolution) {
   const Vector2 first = piece.start() - point;
+  if (first.norm() <= resolution || (piece.end() - point).norm() <= resolution) return std::nullopt;
   double low = 0.0;
   double high = 0.0;
-  bool touches = first.norm() == 0.0;
+  bool touches = false;
   for (Eigen::Index i = 1; i < piece.net.cols() && !touches; ++i) {
     const Vector2 ray = piece.control_point(i) - point;
     touches = ray.norm() == 0.0;

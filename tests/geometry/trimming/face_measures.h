@@ -11,16 +11,25 @@
 #include "geometry/trimming/trimmed_surface.h"
 #include "tests/geometry/measures.h"
 
-/// Areas of trimmed faces by brute force: Green's theorem in the parameter plane, the inner integral by Gauss rules
-/// span by span, the outer one by bisection. Nothing is shared with the product's cutting of elements.
+/// Areas of trimmed faces, and the volumes that they enclose, by brute force: Green's theorem in the parameter plane,
+/// the inner integral by Gauss rules span by span, the outer one by bisection. Nothing is shared with the product's
+/// cutting of elements.
 namespace isorim::geometry::testing {
+
+/// What is integrated over a face.
+enum class FaceQuantity {
+  area,
+  /// A third of x . n: the content of the cone from the origin, the normal being the natural one.
+  volume,
+};
 
 class FaceMeasure {
  public:
-  explicit FaceMeasure(const NurbsSurface<3>& surface) : surface_(surface), breaks_(surface.knots_u().breakpoints()) {}
+  explicit FaceMeasure(const NurbsSurface<3>& surface, FaceQuantity quantity = FaceQuantity::area)
+      : surface_(surface), breaks_(surface.knots_u().breakpoints()), quantity_(quantity) {}
 
-  /// The area on the left of a closed chain of curves, ends joined by straight lines.
-  double area(const TrimLoop& loop) const {
+  /// The quantity of the part on the left of a closed chain of curves, ends joined by straight lines.
+  double on_left_of(const TrimLoop& loop) const {
     double sum = 0.0;
     for (std::size_t k = 0; k < loop.curves.size(); ++k) {
       for (const BezierSegment& segment : bezier_segments({loop.curves[k].knots(), loop.curves[k].homogeneous()}))
@@ -35,7 +44,12 @@ class FaceMeasure {
   }
 
  private:
-  /// The integral of the area element over u from the start of the domain.
+  double density(const SurfaceJet<3>& jet) const {
+    const Vector3 normal = jet.du.cross(jet.dv);
+    return quantity_ == FaceQuantity::area ? normal.norm() : jet.point.dot(normal) / 3.0;
+  }
+
+  /// The integral of the density over u from the start of the domain.
   double inner(const Point2& uv) const {
     static const GaussRule rule = gauss_rule(16);
     double sum = 0.0;
@@ -46,7 +60,7 @@ class FaceMeasure {
       const double length = end - breaks_[i];
       for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
         const SurfaceJet<3> jet = evaluate_jet(surface_, Point2(breaks_[i] + length * rule.nodes[k], uv.y()));
-        sum += length * rule.weights[k] * jet.du.cross(jet.dv).norm();
+        sum += length * rule.weights[k] * density(jet);
       }
     }
     return sum;
@@ -74,12 +88,27 @@ class FaceMeasure {
 
   const NurbsSurface<3>& surface_;
   std::vector<double> breaks_;
+  FaceQuantity quantity_;
 };
 
-inline double face_area(const SurfaceShape& shape) {
-  const FaceMeasure measure(surface_of(shape));
+inline double face_integral(const SurfaceShape& shape, FaceQuantity quantity) {
+  const FaceMeasure measure(surface_of(shape), quantity);
   double sum = 0.0;
-  for (const TrimLoop& loop : trim_loops(shape)) sum += measure.area(loop);
+  for (const TrimLoop& loop : trim_loops(shape)) sum += measure.on_left_of(loop);
+  return sum;
+}
+
+inline double face_area(const SurfaceShape& shape) {
+  return face_integral(shape, FaceQuantity::area);
+}
+
+/// The area of a boundary and the volume that it encloses.
+inline Measures face_measures(const Boundary<3>& boundary) {
+  Measures sum;
+  for (const Patch<3>& patch : boundary.patches) {
+    sum.boundary += face_area(patch.shape);
+    sum.content += patch.orientation * face_integral(patch.shape, FaceQuantity::volume);
+  }
   return sum;
 }
 

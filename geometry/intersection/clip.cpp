@@ -1,0 +1,212 @@
+#include "geometry/intersection/clip.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geometry/bezier/element_table.h"
+#include "geometry/errors.h"
+#include "geometry/intersection/clipped_face.h"
+#include "geometry/intersection/tool_caps.h"
+#include "geometry/trimming/face_locator.h"
+
+namespace isorim::geometry {
+namespace {
+
+BoundingBox<3> box_of(const Boundary<3>& solid) {
+  BoundingBox<3> box{Point3::Constant(std::numeric_limits<double>::infinity()),
+                     Point3::Constant(-std::numeric_limits<double>::infinity())};
+  for (const Patch<3>& patch : solid.patches) {
+    const Points<3> points = surface_of(patch.shape).control_points();
+    box.lower = box.lower.cwiseMin(points.rowwise().minCoeff());
+    box.upper = box.upper.cwiseMax(points.rowwise().maxCoeff());
+  }
+  return box;
+}
+
+ImplicitSurface turned(const ImplicitSurface& inside, KeptSide keep) {
+  return keep == KeptSide::inside ? inside : complement(inside);
+}
+
+/// A curve in the parameters is a point in space (along a pole).
+bool is_point_in_space(const CapEdge& edge, double size) {
+  const Point3 start = evaluate(edge.surface, evaluate(edge.curve, 0.0));
+  for (const double t : {0.25, 0.5, 0.75, 1.0})
+    if ((evaluate(edge.surface, evaluate(edge.curve, t)) - start).norm() > 1e-9 * size) return false;
+  return true;
+}
+
+Point3 point_on(const CapEdge& edge, double t) {
+  return evaluate(edge.surface, evaluate(edge.curve, t));
+}
+
+/// The two edges run along each other in opposite directions.
+bool cancel(const CapEdge& a, const CapEdge& b, double distance) {
+  const Point3 start = point_on(a, 0.0);
+  const Point3 middle = point_on(a, 0.5);
+  if ((start - point_on(b, 1.0)).norm() > distance || (point_on(a, 1.0) - point_on(b, 0.0)).norm() > distance)
+    return false;
+  // They may be parametrised differently.
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int k = 1; k < 64; ++k) nearest = std::min(nearest, (middle - point_on(b, k / 64.0)).norm());
+  return nearest <= 0.05 * (middle - start).norm();
+}
+
+/// What is left of a solid, before it is closed.
+struct OpenPart {
+  Boundary<3> boundary;
+  std::vector<CapEdge> edges;
+  /// Some face lost more than what lies on the tool.
+  bool is_reduced = false;
+};
+
+class Clipper {
+ public:
+  Clipper(const Boundary<3>& solid, const ClipOptions& options)
+      : solid_(solid), options_(options), box_(box_of(solid)) {}
+
+  double size() const { return box_.diagonal(); }
+  Point3 middle() const { return box_.middle(); }
+
+  OpenPart cut(const ImplicitSurface& implicit) const {
+    OpenPart part;
+    for (const Patch<3>& patch : solid_.patches) {
+      try {
+        append(patch, implicit, part);
+      } catch (GeometryError& error) {
+        error.add_context(fmt::format("cutting patch \"{}\"", patch.name));
+        throw;
+      }
+    }
+    remove_cancelling(part.edges);
+    return part;
+  }
+
+ private:
+  void append(const Patch<3>& patch, const ImplicitSurface& implicit, OpenPart& part) const {
+    ClippedFace face = clip_face(patch.shape, implicit, {.tolerance = options_.tolerance, .size = size()});
+    if (face.is_reduced && (face.shape || !face.lies_on_tool)) part.is_reduced = true;
+    for (NurbsCurve<2>& cut : face.cuts) {
+      // Seen against the outward normal the face lies on the left of its edge, so the cap on that of the reverse.
+      CapEdge edge{surface_of(patch.shape), patch.orientation > 0 ? reverse(cut) : std::move(cut)};
+      if (!is_point_in_space(edge, size())) part.edges.push_back(std::move(edge));
+    }
+    if (face.shape) part.boundary.patches.push_back({patch.name, std::move(*face.shape), patch.orientation});
+  }
+
+  /// Edges of two kept faces that both end at the tool bound nothing.
+  void remove_cancelling(std::vector<CapEdge>& edges) const {
+    const double distance = options_.gap_tolerance * size();
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const auto partner = std::find_if(edges.begin() + static_cast<std::ptrdiff_t>(i) + 1, edges.end(),
+                                        [&](const CapEdge& other) { return cancel(edges[i], other, distance); });
+      if (partner == edges.end()) continue;
+      edges.erase(partner);
+      edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(i));
+      --i;
+    }
+  }
+
+  const Boundary<3>& solid_;
+  ClipOptions options_;
+  BoundingBox<3> box_;
+};
+
+/// The first of "cap", "cap_2", ... that is not taken.
+std::string free_name(const std::set<std::string>& taken) {
+  std::string name = "cap";
+  for (int k = 2; taken.count(name) > 0; ++k) name = fmt::format("cap_{}", k);
+  return name;
+}
+
+void append_caps(Boundary<3>& boundary, std::vector<Patch<3>> caps) {
+  std::set<std::string> names;
+  for (const Patch<3>& patch : boundary.patches) names.insert(patch.name);
+  for (Patch<3>& cap : caps) {
+    cap.name = free_name(names);
+    names.insert(cap.name);
+    boundary.patches.push_back(std::move(cap));
+  }
+}
+
+/// Makes the caps of one tool.
+struct CapMaker {
+  const Boundary<3>& solid;
+  const Clipper& clipper;
+  const std::vector<CapEdge>& edges;
+  const ClipOptions& options;
+
+  std::vector<Patch<3>> operator()(const PlaneTool& tool) const {
+    const PlaneSection frame = plane_frame(tool, clipper.middle());
+    return plane_caps(frame, plane_loops(frame, edges, clipper.size(), options));
+  }
+  std::vector<Patch<3>> operator()(const SphereTool& tool) const {
+    return sphere_caps(tool, edges, clipper.size(), options, [this](const Point3& point) { return contains(point); });
+  }
+  std::vector<Patch<3>> operator()(const CylinderTool& tool) const {
+    return cylinder_caps(tool, edges, clipper.size(), options);
+  }
+  std::vector<Patch<3>> operator()(const ConeTool& tool) const {
+    return cone_caps(tool, edges, clipper.size(), options);
+  }
+
+ private:
+  /// The point lies in the region in which a plane through it cuts the solid.
+  bool contains(const Point3& point) const {
+    const PlaneTool plane{point, Vector3(0.4387, 0.2913, 0.8501)};
+    const PlaneSection cut = section(solid, plane, options);
+    if (cut.loops.empty()) return false;
+    const Vector3 d = point - cut.origin;
+    return FaceLocator(cut.loops).winding_number(Point2(d.dot(cut.axis_x), d.dot(cut.axis_y))).value_or(0) != 0;
+  }
+};
+
+Boundary<3> clip_once(const Boundary<3>& solid, const ClipTool& tool, const ClipOptions& options) {
+  const Clipper clipper(solid, options);
+  OpenPart part = clipper.cut(implicit_surface(tool));
+  const auto* ball = std::get_if<SphereTool>(&tool);
+  if (!part.is_reduced && !ball) return solid;
+  const std::vector<Patch<3>> caps = std::visit(CapMaker{solid, clipper, part.edges, options}, tool);
+  if (!part.is_reduced && caps.empty()) return solid;
+  append_caps(part.boundary, caps);
+  if (part.boundary.patches.empty()) throw GeometryError("clip: nothing is left of the solid");
+  return std::move(part.boundary);
+}
+
+}  // namespace
+
+ImplicitSurface implicit_surface(const ClipTool& tool) {
+  struct Maker {
+    ImplicitSurface operator()(const PlaneTool& t) const { return implicit_plane(t.point, t.normal); }
+    ImplicitSurface operator()(const SphereTool& t) const {
+      return turned(implicit_sphere(t.centre, t.radius), t.keep);
+    }
+    ImplicitSurface operator()(const CylinderTool& t) const {
+      return turned(implicit_cylinder(t.point, t.axis, t.radius), t.keep);
+    }
+    ImplicitSurface operator()(const ConeTool& t) const {
+      return turned(implicit_cone(t.apex, t.axis, t.half_angle), t.keep);
+    }
+  };
+  return std::visit(Maker{}, tool);
+}
+
+Boundary<3> clip(const Boundary<3>& solid, const ClipTool& tool, const ClipOptions& options) {
+  const auto* cone = std::get_if<ConeTool>(&tool);
+  if (!cone || cone->keep == KeptSide::outside) return clip_once(solid, tool, options);
+  // What lies within the other nappe goes first.
+  return clip_once(clip_once(solid, PlaneTool{cone->apex, -cone->axis}, options), tool, options);
+}
+
+PlaneSection section(const Boundary<3>& solid, const PlaneTool& plane, const ClipOptions& options) {
+  const Clipper clipper(solid, options);
+  PlaneSection result = plane_frame(plane, clipper.middle());
+  result.loops = plane_loops(result, clipper.cut(implicit_surface(plane)).edges, clipper.size(), options);
+  return result;
+}
+
+}  // namespace isorim::geometry

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "geometry/boundary.h"
+#include "geometry/intersection/clip.h"
+#include "geometry/nurbs/curve.h"
+#include "geometry/nurbs/surface.h"
+
+/// For clip.cpp: the parts of a tool's surface that close what it has cut.
+namespace isorim::geometry {
+
+/// An edge of a cap: an edge of a face along the tool, over [0, 1], with the cap on the left of its direction as seen
+/// against the outward normal of what is kept.
+struct CapEdge {
+  NurbsSurface<3> surface;
+  NurbsCurve<2> curve;
+};
+
+/// The plane with its own coordinates.
+PlaneSection plane_frame(const PlaneTool& plane, const Point3& near);
+
+/// The edges in the coordinates of the plane, joined to loops. Edges along lines of constant u or v are exact; others
+/// are met to rounding by polynomials. `size`: the diagonal of the solid's box.
+std::vector<TrimLoop> plane_loops(const PlaneSection& frame, const std::vector<CapEdge>& edges, double size,
+                                  const ClipOptions& options);
+
+/// Trimmed parts of the plane, one for each connected part, natural normals along the plane's.
+std::vector<Patch<3>> plane_caps(const PlaneSection& frame, const std::vector<TrimLoop>& loops);
+
+/// Tells whether a point lies in the solid.
+using PointTest = std::function<bool(const Point3&)>;
+
+/// Trimmed parts of round tools.
+std::vector<Patch<3>> sphere_caps(const SphereTool& tool, const std::vector<CapEdge>& edges, double size,
+                                  const ClipOptions& options, const PointTest& is_inside);
+std::vector<Patch<3>> cylinder_caps(const CylinderTool& tool, const std::vector<CapEdge>& edges, double size,
+                                    const ClipOptions& options);
+std::vector<Patch<3>> cone_caps(const ConeTool& tool, const std::vector<CapEdge>& edges, double size,
+                                const ClipOptions& options);
+
+}  // namespace isorim::geometry
