@@ -20,6 +20,7 @@
 #include "quadrature/boundary_sums.h"
 #include "quadrature/element_sums.h"
 #include "solver/properties.h"
+#include "tests/quadrature/regions.h"
 
 namespace {
 
@@ -151,5 +152,51 @@ void Sphere(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(solver::geometric_properties(table, options));
 }
 BENCHMARK(Sphere)->ArgName("exponent")->Arg(6)->Arg(9)->Arg(12)->Unit(benchmark::kMicrosecond);
+
+/// Cuts a hole into each element, its outline `pieces` cubics as CAD programs fit them.
+void cut_holes(geometry::ElementTable<3>& table, int pieces) {
+  for (geometry::BezierElement<3>& element : table.elements) {
+    geometry::TrimmedRegion region = quadrature::testing::whole_cell();
+    quadrature::testing::add_blob(region, {0.5, 0.5}, 0.3, 0.1, 3, pieces, -1);
+    element.region = static_cast<std::int32_t>(table.regions.size());
+    table.regions.push_back(std::move(region));
+  }
+}
+
+/// A sphere with eight holes, 240 short curves in all.
+void TrimmedSphere(benchmark::State& state) {
+  geometry::ElementTable<3> table = geometry::bezier_elements(geometry::sphere(1.0));
+  cut_holes(table, 30);
+  solver::PropertyOptions<3> options;
+  options.integration.tolerance = std::pow(10.0, -static_cast<double>(state.range(0)));
+  options.integration.threads = 1;
+  for (auto _ : state) benchmark::DoNotOptimize(solver::geometric_properties(table, options));
+}
+BENCHMARK(TrimmedSphere)->ArgName("exponent")->Arg(6)->Arg(9)->Arg(12)->Unit(benchmark::kMicrosecond);
+
+/// 500 tori (16 elements each) and 500 boxes, a hole of 30 curves in each of the 11,000 elements, to 1e-9.
+void ManyTrimmedFaces(benchmark::State& state) {
+  static const geometry::ElementTable<3> table = [] {
+    geometry::Boundary<3> solids;
+    for (int i = 0; i < 500; ++i) {
+      const geometry::Point3 place(10.0 * i, 0.0, 0.0);
+      for (const geometry::Boundary<3>& solid :
+           {geometry::torus(2.0, 0.5, place), geometry::box({1.0, 1.0, 1.0}, place)})
+        solids.patches.insert(solids.patches.end(), solid.patches.begin(), solid.patches.end());
+    }
+    geometry::ElementTable<3> made = geometry::bezier_elements(solids);
+    cut_holes(made, 30);
+    return made;
+  }();
+  solver::PropertyOptions<3> options;
+  options.integration.tolerance = 1e-9;
+  options.integration.threads = static_cast<int>(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(solver::geometric_properties(table, options));
+  state.counters["elements"] =
+      benchmark::Counter(static_cast<double>(table.elements.size() * static_cast<std::size_t>(state.iterations())),
+                         benchmark::Counter::kIsRate);
+  state.counters["elements_in_all"] = static_cast<double>(table.elements.size());
+}
+BENCHMARK(ManyTrimmedFaces)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
