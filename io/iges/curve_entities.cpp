@@ -108,10 +108,11 @@ ParametrisedCurve EntityReader::read_arc(const Entity& entity) {
   const Point2 centre = read_point2(p);
   const Point2 start = read_point2(p);
   const Point2 end = read_point2(p);
+  ParametrisedCurve result = arc(z, centre, start, end);
   const double radius = (start - centre).norm();
   if (std::abs((end - centre).norm() - radius) > 1e-4 * radius)
     remark("the ends of the arc are not equally far from its centre; the start's distance is taken", entity);
-  return arc(z, centre, start, end);
+  return result;
 }
 
 ParametrisedCurve EntityReader::read_conic(const Entity& entity) {

@@ -78,7 +78,7 @@ geometry::Point<Dim> at_fraction(const NurbsCurve<Dim>& curve, double part) {
 // --- surfaces without ends ---
 
 bool is_straight(const NurbsCurve<3>& curve) {
-  return curve.degree() == 1 && curve.homogeneous().cols() == 2;
+  return curve.degree() == 1;
 }
 
 /// Turns the axes of a plane whose parameters nobody uses, so that its first straight edge runs along x.
@@ -86,7 +86,8 @@ void align_plane(AnalyticSurface& plane, const std::vector<RawLoop>& loops) {
   for (const RawLoop& loop : loops)
     for (const RawPiece& piece : loop) {
       if (!piece.model_curve || !is_straight(*piece.model_curve)) continue;
-      const Vector3 along = at_fraction(*piece.model_curve, 1.0) - at_fraction(*piece.model_curve, 0.0);
+      const Points<3> points = piece.model_curve->control_points();
+      const Vector3 along = points.col(1) - points.col(0);
       const Vector3 normal = plane.frame.x.cross(plane.frame.y);
       const Vector3 across = along - along.dot(normal) * normal;
       if (!(across.norm() > 0.5 * along.norm()) || along.isZero(0.0)) continue;
@@ -115,7 +116,7 @@ std::optional<double> middle_angle(const AnalyticSurface& surface, const std::ve
   return std::atan2(sum.y(), sum.x()) * 180.0 / std::numbers::pi;
 }
 
-/// Whether all curves in space are straight.
+/// Whether all curves in space are straight lines and polygons.
 bool all_straight(const std::vector<RawLoop>& loops) {
   for (const RawLoop& loop : loops)
     for (const RawPiece& piece : loop)

@@ -110,8 +110,13 @@ void Reading::find_parts() {
 
 bool Reading::stands_for_itself(const Entity& entity) {
   const Role role = iges::role_of(entity);
-  if (role == Role::part || role == Role::note || role == Role::unknown) return false;
-  if (parts_.contains(entity.sequence)) return false;
+  if (role == Role::note || role == Role::unknown || parts_.contains(entity.sequence)) return false;
+  if (role == Role::part) {
+    if (entity.type == 141 || entity.type == 142 || entity.type == 508)
+      reader_.remark("bounds no face; it is left out", entity);
+    if (entity.type == 308) reader_.remark("is a subfigure that is nowhere placed; it is left out", entity);
+    return false;
+  }
   if (entity.blank != 0 && !options_.include_blanked) {
     reader_.remark("is blanked (invisible) and left out", entity);
     return false;
