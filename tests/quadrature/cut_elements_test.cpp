@@ -55,6 +55,19 @@ std::vector<NamedRegion> regions() {
   testing::add_blob(islands, {0.25, 0.25}, 0.2, 0.2, 4, 24, 1);
   testing::add_blob(islands, {0.75, 0.7}, 0.2, 0.3, 2, 24, 1, 1.0);
   all.push_back({"two islands", islands});
+  // Where bisection cuts, and where a curve counts as beyond the cell.
+  for (const double shift : {0.0, 1e-12, -1e-12, 1e-16}) {
+    const std::string by = " shifted by " + std::to_string(shift * 1e12);
+    all.push_back({"half" + by, testing::polygon({{0, 0}, {0.5 + shift, 0}, {0.5 + shift, 1}, {0, 1}})});
+    const double inset = std::abs(shift);
+    all.push_back(
+        {"rectangle" + by, testing::polygon({{inset, 0.2}, {1 - inset, 0.2}, {1 - inset, 0.7}, {inset, 0.7}})});
+    TrimmedRegion tangent;
+    testing::add_circle(tangent, {0.25 + inset, 0.5}, 0.25, 4, 1);
+    all.push_back({"circle tangent to the middle" + by, tangent});
+    all.push_back({"corner in the middle" + by,
+                   testing::polygon({{0.5 + shift, 0.5 - shift}, {1, 0.3}, {0.6, 0.8}, {0.1, 0.9}})});
+  }
   return all;
 }
 
