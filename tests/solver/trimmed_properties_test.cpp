@@ -4,8 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/shapes/transforms.h"
+#include "quadrature/gauss_legendre.h"
 #include "solver/properties.h"
+#include "tests/quadrature/regions.h"
 #include "tests/quadrature/trimmed_solids.h"
 
 namespace isorim::solver {
@@ -82,6 +83,15 @@ QuarterArc quarter_arc(double s) {
   return {std::atan2(y, x), y / std::hypot(x, y)};
 }
 
+/// The derivative of that sine: the cosine times the derivative of the angle, (x y' - y x') / (x^2 + y^2).
+double rise(double s) {
+  const double x = (1.0 - s) * (1.0 - s) + std::numbers::sqrt2 * s * (1.0 - s);
+  const double y = s * s + std::numbers::sqrt2 * s * (1.0 - s);
+  const double middle = std::numbers::sqrt2 * (1.0 - 2.0 * s);
+  const double turning = (x * (2.0 * s + middle) - y * (middle - 2.0 * (1.0 - s))) / (x * x + y * y);
+  return std::cos(quarter_arc(s).angle) * turning;
+}
+
 /// The area is the line integral of longitude times dz around the ellipse, which the trapezoidal rule integrates to
 /// rounding (the integrand is periodic and analytic).
 SpherePatch sphere_patch() {
@@ -95,13 +105,7 @@ SpherePatch sphere_patch() {
   for (int i = 0; i < steps; ++i) {
     const double t = 2.0 * pi * i / steps;
     const QuarterArc u = quarter_arc(4.0 * (centre[0] + radii[0] * std::cos(t)));
-    const double s = 2.0 * (centre[1] + radii[1] * std::sin(t)) - 1.0;
-    // dz/ds of the quarter arc: the cosine times the derivative of the angle, |x y' - y x'| / (x^2 + y^2).
-    const double middle = std::numbers::sqrt2 * (1.0 - 2.0 * s);
-    const double x = (1.0 - s) * (1.0 - s) + std::numbers::sqrt2 * s * (1.0 - s);
-    const double y = s * s + std::numbers::sqrt2 * s * (1.0 - s);
-    const double turning = (x * (2.0 * s + middle) - y * (middle - 2.0 * (1.0 - s))) / (x * x + y * y);
-    const double dz = std::cos(quarter_arc(s).angle) * turning;
+    const double dz = rise(2.0 * (centre[1] + radii[1] * std::sin(t)) - 1.0);
     patch.area += u.angle * dz * 2.0 * radii[1] * std::cos(t) * 2.0 * pi / steps;
   }
   return patch;
@@ -135,29 +139,82 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-// The theory says rho^(-2 n) with rho = 5.03 for the whole octant, more for the part that the ellipse's rectangle is.
-TEST(TrimmedProperties, ErrorOfATrimmedFaceFallsSpectrally) {
-  const SpherePatch patch = sphere_patch();
+/// The relative errors of the area with fixed rules of 1 to 16 points.
+std::vector<double> errors_of_fixed_rules(const SpherePatch& patch) {
   PropertyOptions<3> options;
   options.scope = PropertyOptions<3>::Scope::boundary_only;
-  std::vector<double> points;
-  std::vector<double> logarithms;
+  std::vector<double> errors;
   for (int n = 1; n <= 16; ++n) {
     options.integration.fixed_points = n;
     const auto result = geometric_properties(patch.table, options);
-    const double error = std::abs(result.boundary_measure.value - patch.area) / patch.area;
-    EXPECT_LE(error, 2.0 * result.boundary_measure.error / patch.area + 1e-15) << n;
+    errors.push_back(std::abs(result.boundary_measure.value - patch.area) / patch.area);
     EXPECT_EQ(result.boundary_status, Status::fixed_rule);
-    if (error > 1e-13) {
-      points.push_back(n);
-      logarithms.push_back(std::log10(error));
+  }
+  return errors;
+}
+
+// The theory says rho^(-2 n) with rho = 5.03 for the whole octant, more for the part that the ellipse's rectangle is.
+TEST(TrimmedProperties, ErrorOfATrimmedFaceFallsSpectrally) {
+  const std::vector<double> errors = errors_of_fixed_rules(sphere_patch());
+  std::vector<double> points;
+  std::vector<double> logarithms;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (errors[i] > 1e-13) {
+      points.push_back(static_cast<double>(i) + 1.0);
+      logarithms.push_back(std::log10(errors[i]));
     }
-    if (n >= 9) {
-      EXPECT_LT(error, 1e-13) << n;
+    if (i >= 8) {
+      EXPECT_LT(errors[i], 1e-13) << i + 1;
     }
   }
   ASSERT_GE(points.size(), 4U);
   EXPECT_LT(slope(points, logarithms), -1.4);
+}
+
+TEST(TrimmedProperties, EstimatesOfFixedRulesCoverTheErrorOfATrimmedFace) {
+  const SpherePatch patch = sphere_patch();
+  PropertyOptions<3> options;
+  options.scope = PropertyOptions<3>::Scope::boundary_only;
+  for (int n = 1; n <= 16; ++n) {
+    options.integration.fixed_points = n;
+    const quadrature::Estimate area = geometric_properties(patch.table, options).boundary_measure;
+    EXPECT_LE(std::abs(area.value - patch.area), 2.0 * area.error) << n;
+  }
+}
+
+/// An ellipse over two octants of the sphere, cut where it crosses the knot line between them; or with one of its
+/// arcs not cut there.
+SpherePatch across_a_knot_line(bool one_crossing_missed) {
+  SpherePatch patch{bezier_elements(geometry::sphere(1.0)), 0.0};
+  const auto arc = [](double centre_x, double from, double to) {
+    quadrature::testing::Curve curve = quadrature::testing::arc({0.0, 0.0}, 1.0, from * pi / 4.0, to * pi / 4.0);
+    curve.row(0) = 0.4 * curve.row(0) + centre_x * curve.row(2);
+    curve.row(1) = 0.35 * curve.row(1) + 0.5 * curve.row(2);
+    return curve;
+  };
+  geometry::TrimmedRegion left{{arc(1.0, 3, 4), arc(1.0, 4, 6), quadrature::testing::line({1.0, 0.15}, {1.0, 0.85})}};
+  geometry::TrimmedRegion right{{arc(0.0, 6, 8), arc(0.0, 0, 1), quadrature::testing::line({0.0, 0.85}, {0.0, 0.15})}};
+  left.curves.push_back(arc(1.0, one_crossing_missed ? 1.0 : 2.0, 3));
+  if (!one_crossing_missed) right.curves.push_back(arc(0.0, 1, 2));
+  patch.table.regions = {left, right};
+  // The octants of the northern hemisphere with u in [0, 1/4] and [1/4, 1/2].
+  patch.table.elements = {patch.table.elements[4], patch.table.elements[5]};
+  for (std::int32_t i = 0; i < 2; ++i) patch.table.elements[static_cast<std::size_t>(i)].region = i;
+  const quadrature::Rule& rule = quadrature::gauss_legendre(60);
+  for (const double start : {-0.5 * pi, 0.5 * pi}) {
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+      const double t = start + pi * rule.nodes[i];
+      const double u =
+          start < 0.0 ? 0.5 * pi + quarter_arc(0.4 * std::cos(t)).angle : quarter_arc(1.0 + 0.4 * std::cos(t)).angle;
+      patch.area += u * rise(0.5 + 0.35 * std::sin(t)) * 0.35 * std::cos(t) * pi * rule.weights[i];
+    }
+  }
+  return patch;
+}
+
+TEST(TrimmedProperties, MissedKnotCrossingIsNoticed) {
+  EXPECT_LT(errors_of_fixed_rules(across_a_knot_line(false)).back(), 1e-13);
+  for (const double error : errors_of_fixed_rules(across_a_knot_line(true))) EXPECT_GT(error, 1e-4);
 }
 
 }  // namespace
