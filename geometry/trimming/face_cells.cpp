@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -296,6 +297,38 @@ std::vector<int> runs_along_lines(std::span<const CutPiece> pieces, int columns,
   return runs;
 }
 
+/// The spans nearest to a knot span that count: itself, or its neighbours on both sides.
+std::array<int, 2> nearest_spans(const std::vector<int>& spans, std::size_t index) {
+  const auto counts = [](int span) { return span >= 0; };
+  const auto here = spans.begin() + static_cast<std::ptrdiff_t>(index);
+  const auto after = std::find_if(here, spans.end(), counts);
+  const auto before = std::find_if(std::make_reverse_iterator(here + 1), spans.rend(), counts);
+  const int lower = before != spans.rend() ? *before : *after;
+  return {lower, after != spans.end() ? *after : lower};
+}
+
+/// The cells of all knot spans from those of the spans that count. The others are whole if they lie among whole ones.
+FaceCells with_all_spans(FaceCells merged, const ParameterGrid& grid) {
+  const std::vector<int>& in_u = grid.u.spans();
+  const std::vector<int>& in_v = grid.v.spans();
+  if (in_u.size() == static_cast<std::size_t>(merged.columns) && in_v.size() == static_cast<std::size_t>(merged.rows))
+    return merged;
+  FaceCells cells{static_cast<int>(in_u.size()), static_cast<int>(in_v.size()), {}, {}};
+  for (std::size_t row = 0; row < in_v.size(); ++row)
+    for (std::size_t column = 0; column < in_u.size(); ++column) {
+      if (in_u[column] >= 0 && in_v[row] >= 0) {
+        cells.state.push_back(merged.at(in_u[column], in_v[row]));
+        continue;
+      }
+      bool whole = true;
+      for (const int v : nearest_spans(in_v, row))
+        for (const int u : nearest_spans(in_u, column)) whole = whole && merged.at(u, v) == FaceCells::whole;
+      cells.state.push_back(whole ? FaceCells::whole : FaceCells::outside);
+    }
+  cells.regions = std::move(merged.regions);
+  return cells;
+}
+
 }  // namespace
 
 FaceCells assemble_cells(std::span<const CutPiece> pieces, const ParameterGrid& grid) {
@@ -324,7 +357,7 @@ FaceCells assemble_cells(std::span<const CutPiece> pieces, const ParameterGrid& 
     if (coverage != 0)
       throw NumericalError(fmt::format("trimming: the curves in row {} of the surface's knot spans do not close", row));
   }
-  return cells;
+  return with_all_spans(std::move(cells), grid);
 }
 
 FaceCells cut_into_cells(const TrimmedSurface& face) {

@@ -16,11 +16,14 @@ struct GridCoordinate {
   bool is_on_line() const { return station % 2 == 0; }
 };
 
-/// The knot lines of one parameter.
+/// The knot lines of one parameter. Lines that rounding can hardly tell apart (within 8 tolerances) count as one: what
+/// lies between them is nothing.
 class GridAxis {
  public:
   explicit GridAxis(const KnotVector& knots);
 
+  /// For each non-empty knot span the span between the lines here, or -1 if it is one of those that count as nothing.
+  const std::vector<int>& spans() const { return spans_; }
   const std::vector<double>& lines() const { return lines_; }
   int span_count() const { return static_cast<int>(lines_.size()) - 1; }
   double line(int i) const { return lines_[static_cast<std::size_t>(i)]; }
@@ -33,7 +36,10 @@ class GridAxis {
   GridCoordinate locate(double value) const;
 
  private:
+  void merge_lines();
+
   std::vector<double> lines_;
+  std::vector<int> spans_;
   double tolerance_;
 };
 
