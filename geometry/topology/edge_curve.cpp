@@ -44,10 +44,32 @@ std::vector<double> divided(const std::vector<double>& breaks, int legs) {
   return result;
 }
 
+/// Whether splines on these knots may turn a corner inside the domain.
+bool has_kinks(const KnotVector& knots) {
+  int multiplicity = 1;
+  const Interval domain = knots.domain();
+  for (std::size_t i = 1; i < knots.knots().size(); ++i) {
+    const double knot = knots.knots()[i];
+    multiplicity = knot == knots.knots()[i - 1] ? multiplicity + 1 : 1;
+    if (knot > domain.first && knot < domain.last && multiplicity >= knots.degree()) return true;
+  }
+  return false;
+}
+
+double distance_from_chord(const Point3& point, const Point3& from, const Point3& to) {
+  const Vector3 chord = to - from;
+  const double along = std::clamp((point - from).dot(chord) / std::max(chord.squaredNorm(), 1e-300), 0.0, 1.0);
+  return (point - from - along * chord).norm();
+}
+
 }  // namespace
 
 EdgeCurve::EdgeCurve(const NurbsSurface<3>& surface, NurbsCurve<2> pcurve)
-    : surface_(&surface), pcurve_(std::move(pcurve)), exact_(exact_lift(surface, pcurve_)) {
+    : surface_(&surface),
+      pcurve_(std::move(pcurve)),
+      exact_(exact_lift(surface, pcurve_)),
+      kinks_u_(!exact_ && has_kinks(surface.knots_u())),
+      kinks_v_(!exact_ && has_kinks(surface.knots_v())) {
   sample();
   lower_ = upper_ = samples_.front().point;
   for (const Sample& sample : samples_) {
@@ -99,19 +121,36 @@ void EdgeCurve::append_samples(double t0, const Point3& p0, double t1, const Poi
   const Point3 point = at(middle);
   const double first = (point - p0).norm();
   const double second = (p1 - point).norm();
-  const Vector3 chord = p1 - p0;
-  const double along = std::clamp((point - p0).dot(chord) / std::max(chord.squaredNorm(), 1e-300), 0.0, 1.0);
-  const double sagitta = (point - p0 - along * chord).norm();
-  const bool flat = sagitta <= flat_enough * chord.norm() && std::min(first, second) >= 0.2 * (first + second);
+  const bool even = std::min(first, second) >= 0.2 * (first + second);
   const bool stands_still = first + second <= 1e-13 * point.cwiseAbs().maxCoeff();
-  if (flat || stands_still || depth == 0) {
-    // Each half bulges by a quarter of the whole; the rest is for legs that wind about their chord.
-    samples_.push_back({t0, p0, 0.75 * sagitta + 1e-3 * first});
-    samples_.push_back({middle, point, 0.75 * sagitta + 1e-3 * second});
+  const bool has_kink = may_have_kink({t0, t1});
+  if (stands_still || depth == 0) {
+    // The last resort: between its ends the curve may be anywhere within their distance.
+    samples_.push_back({t0, p0, first});
+    samples_.push_back({middle, point, second});
     return;
+  }
+  if (!has_kink && even && distance_from_chord(point, p0, p1) <= flat_enough * (p1 - p0).norm()) {
+    const double first_sagitta = distance_from_chord(at(0.5 * (t0 + middle)), p0, point);
+    const double second_sagitta = distance_from_chord(at(0.5 * (middle + t1)), point, p1);
+    if (first_sagitta <= flat_enough * first && second_sagitta <= flat_enough * second) {
+      // What is beyond the sagitta is for legs that wind about their chord.
+      samples_.push_back({t0, p0, 1.5 * first_sagitta + 2e-3 * first});
+      samples_.push_back({middle, point, 1.5 * second_sagitta + 2e-3 * second});
+      return;
+    }
   }
   append_samples(t0, p0, middle, point, depth - 1);
   append_samples(middle, point, t1, p1, depth - 1);
+}
+
+/// Whether a knot line at which the surface is no more than continuous is crossed on the way.
+bool EdgeCurve::may_have_kink(Interval part) const {
+  if (exact_) return false;
+  const Point2 from = evaluate(pcurve_, part.first);
+  const Point2 to = evaluate(pcurve_, part.last);
+  return (kinks_u_ && surface_->knots_u().find_span(from.x()) != surface_->knots_u().find_span(to.x())) ||
+         (kinks_v_ && surface_->knots_v().find_span(from.y()) != surface_->knots_v().find_span(to.y()));
 }
 
 std::size_t EdgeCurve::leg_at(double t) const {
@@ -155,9 +194,10 @@ Interval EdgeCurve::around(std::size_t leg, Interval within) const {
   return {std::max(within.first, samples_[first].t), std::min(within.last, samples_[last].t)};
 }
 
-/// Gauss and Newton's descent on the exact curve; close to the curve it converges as fast as Newton's.
+/// Gauss and Newton's descent on the exact curve; close to the curve it converges as fast as Newton's. Where it does
+/// not converge in a few steps, the target being about as far as the centre of curvature, the slope's sign decides.
 EdgeCurve::Foot EdgeCurve::refine(const Point3& target, double start, Interval within) const {
-  constexpr int most_steps = 30;
+  constexpr int most_steps = 10;
   double t = std::clamp(start, within.first, within.last);
   Tangent jet = tangent(t);
   double distance = (jet.point - target).norm();
@@ -165,23 +205,41 @@ EdgeCurve::Foot EdgeCurve::refine(const Point3& target, double start, Interval w
     const double speed = jet.derivative.squaredNorm();
     if (!(speed > 0.0)) break;
     const double step = -jet.derivative.dot(jet.point - target) / speed;
-    double fraction = 1.0;
-    bool moved = false;
-    for (int halving = 0; halving < 8 && !moved; ++halving, fraction *= 0.5) {
-      const double next = std::clamp(t + fraction * step, within.first, within.last);
-      if (next == t) break;
-      const Tangent at_next = tangent(next);
-      const double d = (at_next.point - target).norm();
-      if (!(d < distance)) continue;
-      moved = true;
-      t = next;
-      jet = at_next;
-      distance = d;
-    }
+    const double next = std::clamp(t + step, within.first, within.last);
     // A step along the curve changes the distance by its square over twice the distance.
-    if (!moved || std::abs(step) * std::sqrt(speed) <= 1e-8 * distance) break;
+    if (next == t || std::abs(next - t) * std::sqrt(speed) <= 1e-9 * distance) return {t, distance};
+    const Tangent at_next = tangent(next);
+    const double next_distance = (at_next.point - target).norm();
+    if (!(next_distance < distance)) break;
+    t = next;
+    jet = at_next;
+    distance = next_distance;
   }
-  return {t, distance};
+  return bisect_slope(target, {t, distance}, jet, within);
+}
+
+EdgeCurve::Foot EdgeCurve::bisect_slope(const Point3& target, Foot start, const Tangent& jet, Interval within) const {
+  const auto slope = [&](const Tangent& at) { return at.derivative.dot(at.point - target); };
+  const bool ahead = slope(jet) < 0.0;
+  Interval bracket = ahead ? Interval{start.t, within.last} : Interval{within.first, start.t};
+  const double tiny = 1e-12 * domain().length();
+  Foot best = start;
+  const auto keep_nearest = [&](double t, const Tangent& at) {
+    const double distance = (at.point - target).norm();
+    if (distance < best.distance) best = {t, distance};
+  };
+  const double far_end = ahead ? within.last : within.first;
+  const Tangent at_end = tangent(far_end);
+  keep_nearest(far_end, at_end);
+  if ((slope(at_end) < 0.0) == ahead) return best;
+  while (bracket.length() > tiny) {
+    const double middle = bracket.middle();
+    if (middle <= bracket.first || middle >= bracket.last) break;
+    const Tangent at = tangent(middle);
+    keep_nearest(middle, at);
+    (slope(at) < 0.0 ? bracket.first : bracket.last) = middle;
+  }
+  return best;
 }
 
 std::optional<EdgeCurve::Foot> EdgeCurve::nearest(const Point3& target, Interval within, double limit) const {

@@ -21,7 +21,7 @@ class EdgeCurve {
   Point3 at(double t) const;
   /// In the direction of the pcurve, seen with the surface.
   LiftedJet jet(double t) const { return lifted_jet(*surface_, pcurve_, t); }
-  /// By Gauss-Legendre rules on the legs of the polygon: to about 1e-6 of itself.
+  /// By Gauss-Legendre rules on the legs of the polygon: to 1e-3 of itself on wild curves, 1e-7 on gentle ones.
   double length(Interval part) const;
   double length() const { return length(domain()); }
   /// Diagonal of the box of the curve's points.
@@ -72,11 +72,16 @@ class EdgeCurve {
   LegDistance leg_distance(std::size_t leg, const Point3& target) const;
   Interval around(std::size_t leg, Interval within) const;
   Foot refine(const Point3& target, double start, Interval within) const;
+  Foot bisect_slope(const Point3& target, Foot start, const Tangent& jet, Interval within) const;
+  bool may_have_kink(Interval part) const;
 
   const NurbsSurface<3>* surface_;
   NurbsCurve<2> pcurve_;
-  /// The same curve in space, if it is a NURBS curve of low degree.
+  /// The same curve in space, if there is one.
   std::optional<NurbsCurve<3>> exact_;
+  /// The surface may turn a corner at knot lines inside its domain.
+  bool kinks_u_ = false;
+  bool kinks_v_ = false;
   std::vector<Sample> samples_;
   Point3 lower_;
   Point3 upper_;

@@ -410,25 +410,26 @@ class Matcher {
 
   /// Open pieces that coincide at this level, in groups of two and more.
   std::vector<Group> coincident_groups() const {
-    std::vector<std::tuple<int, int, int>> by_ends;
+    // Between which vertices, of which solid.
+    using Key = std::tuple<int, int, int>;
+    std::vector<std::pair<Key, int>> by_ends;
     for (const int index : open_pieces()) {
       const auto [low, high] = std::minmax({from(pieces_[slot(index)]), to(pieces_[slot(index)])});
-      by_ends.emplace_back(low, high, index);
+      by_ends.emplace_back(Key(low, high, solid_of(patch_of(index))), index);
     }
     std::ranges::sort(by_ends);
     std::vector<Group> groups;
     std::vector<int> candidates;
     for (std::size_t i = 0; i < by_ends.size(); ++i) {
-      const auto& [low, high, index] = by_ends[i];
-      candidates.push_back(index);
-      const bool last =
-          i + 1 == by_ends.size() || std::get<0>(by_ends[i + 1]) != low || std::get<1>(by_ends[i + 1]) != high;
-      if (!last) continue;
+      candidates.push_back(by_ends[i].second);
+      if (i + 1 < by_ends.size() && by_ends[i + 1].first == by_ends[i].first) continue;
       append_groups(candidates, groups);
       candidates.clear();
     }
     return groups;
   }
+
+  int solid_of(int patch) const { return slot(patch) < options_.solids.size() ? options_.solids[slot(patch)] : -1; }
 
   /// Splits pieces between the same vertices into those that run along each other.
   void append_groups(std::vector<int> candidates, std::vector<Group>& groups) const {

@@ -56,8 +56,9 @@ struct MatchingOptions {
   double tolerance = 0.0;
   /// Up to which edges that are still free coincide where nothing else is near; 0: the tolerance.
   double largest_gap = 0.0;
-  /// As OrientationOptions::shared_edges.
+  /// As in OrientationOptions.
   SharedEdges shared_edges = {};
+  std::vector<int> solids = {};
 };
 
 /// Splits every edge at the vertices (ends of other edges) that lie on it and pairs the pieces that coincide: the same

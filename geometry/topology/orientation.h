@@ -110,6 +110,9 @@ struct OrientationOptions {
   /// Dim = 3: edges that the file says are shared. Believed if the curves run along each other to a tenth of their
   /// length.
   SharedEdges shared_edges = {};
+  /// Dim = 3: the number of the solid to which the file says that each patch belongs, -1 for none; empty: nothing is
+  /// known. Patches with different numbers are not joined.
+  std::vector<int> solids = {};
 
   /// What CAD files call closed: above the gaps that are met in practice, below most features.
   static constexpr double file_gap = 1e-3;

@@ -248,8 +248,9 @@ OrientedBoundary<3> orient<3>(const Boundary<3>& boundary, const OrientationOpti
   Topology<3>& topology = result.topology;
   topology.tolerance = coincidence_tolerance(box, options.tolerance);
 
-  EdgeMatching matching =
-      match_edges(boundary, {topology.tolerance, options.largest_relative_gap * box.diagonal(), options.shared_edges});
+  const MatchingOptions how{topology.tolerance, options.largest_relative_gap * box.diagonal(), options.shared_edges,
+                            options.solids};
+  EdgeMatching matching = match_edges(boundary, how);
   topology.largest_gap = matching.largest_gap;
   topology.largest_gap_place = matching.largest_gap_place;
   topology.largest_tolerance = std::max(topology.tolerance, matching.largest_tolerance);

@@ -449,6 +449,19 @@ TEST(OrientTrimmedShells, BelievesSharedEdgesOfTheFile) {
   EXPECT_NEAR(oriented.topology.largest_gap, 0.01, 1e-9);
 }
 
+TEST(OrientTrimmedShells, BelievesWhichSolidAPatchBelongsTo) {
+  // Two cubes that touch along a face, and two that are the same but for their place in the file.
+  const Boundary<3> stacked = together(cube(1.0), cube(1.0, Point3(1, 0, 0)), "_b");
+  OrientationOptions options;
+  options.solids = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1};
+  EXPECT_EQ(expect_solid(stacked, 2.0, 1e-9, options).topology.shells.size(), 2U);
+  const Boundary<3> twice = together(cube(1.0), cube(1.0), "_b");
+  EXPECT_THAT(refusal([&] { orient(twice, options); }), HasSubstr("two shells coincide"));
+  // A solid with a face of another is open.
+  options.solids[0] = 1;
+  EXPECT_FALSE(orient(stacked, options).topology.closed);
+}
+
 TEST(OrientTrimmedShells, ThreeThousandFacesTakeLessThanTwoSeconds) {
   std::mt19937 random(1);
   Boundary<3> pattern;
