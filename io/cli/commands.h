@@ -42,6 +42,26 @@ struct CheckArguments {
 /// Tells what a case holds without integrating.
 int check_case(const CheckArguments& arguments, std::ostream& out, std::ostream& err);
 
+/// How faces go into a CAD file.
+enum class FaceForm {
+  /// As solids where shells are closed.
+  solids,
+  loose,
+};
+
+struct ConvertArguments {
+  std::filesystem::path input;
+  /// Its extension says what it becomes.
+  std::filesystem::path output;
+  std::vector<std::string> overrides;
+  FaceForm faces = FaceForm::solids;
+  /// Unit of the lengths of a case, which says nothing of it; mm if absent.
+  std::optional<std::string> unit;
+};
+/// Writes the boundary of a case in another format: IGES (.igs, .iges), exact cells for ParaView (.vtu), or a drawing
+/// of a region of the plane (.svg).
+int convert(const ConvertArguments& arguments, std::ostream& out, std::ostream& err);
+
 /// Prints each line of a message as "isorim: line".
 void print_message(std::ostream& err, std::string_view message);
 

@@ -31,14 +31,20 @@ struct Arguments {
   bool quiet = false;
   VerifyArguments verify;
   CheckArguments check;
+  ConvertArguments convert;
+  bool loose_faces = false;
   HelpArguments help;
 };
 
-void add_case_options(CLI::App& command, std::filesystem::path& file, std::vector<std::string>& overrides) {
-  command.add_option("CASE", file, "Case file (.toml)")->required();
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
   command.add_option("--set", overrides, "Overrides a key of the case: section.key=value; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+}
+
+void add_case_options(CLI::App& command, std::filesystem::path& file, std::vector<std::string>& overrides) {
+  command.add_option("CASE", file, "Case file (.toml)")->required();
+  add_overrides(command, overrides);
 }
 
 void add_threads(CLI::App& command, int& threads) {
@@ -65,6 +71,17 @@ void declare(CLI::App& app, Arguments& arguments) {
   CLI::App& check = *app.add_subcommand("check", "Tells what is in a case, closed or not, without integrating");
   add_case_options(check, arguments.check.case_file, arguments.check.overrides);
 
+  CLI::App& convert = *app.add_subcommand("convert", "Writes the boundary of a case in another format");
+  convert.add_option("IN", arguments.convert.input, "Case file (.toml)")->required();
+  convert
+      .add_option("OUT", arguments.convert.output,
+                  "IGES (.igs, .iges), exact cells for ParaView (.vtu), or a drawing of a region of the plane (.svg)")
+      ->required();
+  add_overrides(convert, arguments.convert.overrides);
+  convert.add_flag("--faces", arguments.loose_faces, "IGES: loose faces even where shells are closed; no solids");
+  convert.add_option("--unit", arguments.convert.unit, "IGES: unit of the case's lengths; mm if absent")
+      ->type_name("UNIT");
+
   CLI::App& help = *app.add_subcommand("help", "Explains a command (help run) or case files (help case [SECTION])");
   help.add_option("TOPIC", arguments.help.topic, "A command; or case, with a section or type")->expected(0, 2);
   help.add_flag("--markdown", arguments.help.markdown, "Prints the reference of case files as Markdown");
@@ -80,7 +97,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
 
 /// Commands of the design that come later.
 bool is_later(const std::string& command) {
-  const std::vector<std::string> later{"convert", "sweep", "picture"};
+  const std::vector<std::string> later{"sweep", "picture"};
   return std::find(later.begin(), later.end(), command) != later.end();
 }
 
@@ -118,6 +135,10 @@ int dispatch(CLI::App& app, Arguments& arguments, std::ostream& out, std::ostrea
   }
   if (app.got_subcommand("verify")) return verify_cases(arguments.verify, out, err);
   if (app.got_subcommand("check")) return check_case(arguments.check, out, err);
+  if (app.got_subcommand("convert")) {
+    arguments.convert.faces = arguments.loose_faces ? FaceForm::loose : FaceForm::solids;
+    return convert(arguments.convert, out, err);
+  }
   if (app.got_subcommand("help")) return print_help(arguments.help, out);
   err << app.help();
   return 2;

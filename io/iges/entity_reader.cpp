@@ -171,4 +171,25 @@ std::string EntityReader::name(Parameters& parameters) {
   return {};
 }
 
+std::string EntityReader::spline_name(const Entity& entity) {
+  if (entity.type != 126 && entity.type != 128) return {};
+  Parameters p(file_, entity);
+  // Flags, knots, four numbers a point, and what stands behind them: ranges, and a curve's normal.
+  long left = 0;
+  if (entity.type == 126) {
+    const long points = p.integer() + 1L;
+    const long knots = points + p.integer() + 1L;
+    left = 4 + knots + 4 * points + 5;
+  } else {
+    const long points_u = p.integer() + 1L;
+    const long points_v = p.integer() + 1L;
+    const long knots_u = points_u + p.integer() + 1L;
+    const long knots_v = points_v + p.integer() + 1L;
+    left = 5 + knots_u + knots_v + 4 * points_u * points_v + 4;
+  }
+  if (left < 0 || left > p.remaining()) return {};
+  p.skip(static_cast<int>(left));
+  return name(p);
+}
+
 }  // namespace isorim::io::iges

@@ -56,6 +56,8 @@ class EntityReader {
   int level(const Entity& entity);
   /// Of a 406 form 15 among the properties.
   std::string name(Parameters& parameters);
+  /// Of a B-spline curve or surface (126, 128); empty for others.
+  std::string spline_name(const Entity& entity);
 
   /// An entity is being converted; throws if it already is, or if the nesting is too deep.
   class Visit {

@@ -194,6 +194,7 @@ CadFace FaceReader::whole_surface(const Entity& entity) {
   RawFace face{.surface = reader_.surface(entity), .loops = {}};
   CadFace result{.face = build_face(std::move(face), entity, reader_), .origin = {}};
   result.origin.entity = entity_text(entity);
+  result.origin.name = reader_.spline_name(entity);
   result.origin.colour = reader_.colour(entity);
   result.origin.level = reader_.level(entity);
   return result;

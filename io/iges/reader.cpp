@@ -211,8 +211,10 @@ void Reading::add_curve(const Entity& entity, const AffineMap<3>& map) {
     reader_.remark("is a line without ends; it is left out", entity);
     return;
   }
-  CadOrigin origin{
-      .entity = entity_text(entity), .name = {}, .colour = reader_.colour(entity), .level = reader_.level(entity)};
+  CadOrigin origin{.entity = entity_text(entity),
+                   .name = reader_.spline_name(entity),
+                   .colour = reader_.colour(entity),
+                   .level = reader_.level(entity)};
   for (iges::ParametrisedCurve& piece : reader_.curve_pieces(entity))
     model_.curves.push_back({geometry::transform(piece.curve, map), origin});
 }

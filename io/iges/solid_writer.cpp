@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstddef>
-#include <optional>
+#include <map>
+#include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -28,7 +29,7 @@ struct Stretch {
   /// In the parameter of its pcurve.
   Interval domain;
   int curve = 0;
-  /// Index into Topology::edges; -1 if it is degenerate.
+  /// Index of the edge; -1 if it is degenerate.
   int edge = -1;
   bool forward = true;
 };
@@ -36,9 +37,9 @@ struct Stretch {
 /// The stretches of each loop of each patch, in the order in which the loops run.
 class LoopStretches {
  public:
-  explicit LoopStretches(const Topology<3>& topology) {
-    for (std::size_t i = 0; i < topology.edges.size(); ++i) {
-      for (const EdgeUse* use : {&topology.edges[i].first, &topology.edges[i].second}) {
+  explicit LoopStretches(const std::vector<BoundaryEdge>& edges) {
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      for (const EdgeUse* use : {&edges[i].first, &edges[i].second}) {
         by_loop_[{use->patch, use->loop}].push_back({use->domain, use->curve, static_cast<int>(i), use->forward});
       }
     }
@@ -62,10 +63,28 @@ class LoopStretches {
   std::map<std::pair<int, int>, std::vector<Stretch>> by_loop_;
 };
 
+bool comes_before(const EdgeUse& a, const EdgeUse& b) {
+  return std::tie(a.patch, a.loop, a.curve, a.domain.first) < std::tie(b.patch, b.loop, b.curve, b.domain.first);
+}
+
+/// In an order and with directions that depend on the patches alone: the first use runs forward.
+std::vector<BoundaryEdge> in_order(std::vector<BoundaryEdge> edges) {
+  for (BoundaryEdge& edge : edges) {
+    if (comes_before(edge.second, edge.first)) std::swap(edge.first, edge.second);
+    if (edge.first.forward) continue;
+    std::swap(edge.from, edge.to);
+    edge.first.forward = true;
+    edge.second.forward = !edge.second.forward;
+  }
+  std::sort(edges.begin(), edges.end(),
+            [](const BoundaryEdge& a, const BoundaryEdge& b) { return comes_before(a.first, b.first); });
+  return edges;
+}
+
 class SolidWriter {
  public:
   SolidWriter(ModelWriter& writer, const Topology<3>& topology)
-      : writer_(writer), topology_(topology), stretches_(topology) {}
+      : writer_(writer), topology_(topology), all_edges_(in_order(topology.edges)), stretches_(all_edges_) {}
 
   int write(int outer, const std::vector<int>& voids) {
     std::vector<int> patches = topology_.shells[static_cast<std::size_t>(outer)].patches;
@@ -84,13 +103,13 @@ class SolidWriter {
   }
 
  private:
-  const BoundaryEdge& edge(int index) const { return topology_.edges[static_cast<std::size_t>(index)]; }
+  const BoundaryEdge& edge(int index) const { return all_edges_[static_cast<std::size_t>(index)]; }
 
   /// The edges and vertices of the solid, counted from 1.
   void number_edges(const std::vector<int>& patches) {
     const std::unordered_set<int> in_solid(patches.begin(), patches.end());
-    for (std::size_t i = 0; i < topology_.edges.size(); ++i) {
-      const BoundaryEdge& e = topology_.edges[i];
+    for (std::size_t i = 0; i < all_edges_.size(); ++i) {
+      const BoundaryEdge& e = all_edges_[i];
       if (!in_solid.contains(e.first.patch)) continue;
       edges_.push_back(static_cast<int>(i));
       edge_number_[static_cast<int>(i)] = static_cast<int>(edges_.size());
@@ -122,8 +141,7 @@ class SolidWriter {
   NurbsCurve<3> curve_of(const BoundaryEdge& e) const {
     const EdgeUse& use = e.first;
     const TrimLoop& loop = writer_.loops(use.patch)[static_cast<std::size_t>(use.loop)];
-    const NurbsCurve<3> curve = writer_.lifted(use.patch, piece_of(loop, {use.domain, use.curve, 0, true}));
-    return use.forward ? curve : reverse(curve);
+    return writer_.lifted(use.patch, piece_of(loop, {use.domain, use.curve, 0, true}));
   }
 
   int add_edge_list() {
@@ -195,8 +213,9 @@ class SolidWriter {
 
   ModelWriter& writer_;
   const Topology<3>& topology_;
+  std::vector<BoundaryEdge> all_edges_;
   LoopStretches stretches_;
-  /// Indices into the topology, in the order of the lists.
+  /// Indices of the solid's edges and vertices, in the order of its lists.
   std::vector<int> edges_;
   std::vector<int> vertices_;
   std::unordered_map<int, int> edge_number_;

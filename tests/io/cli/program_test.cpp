@@ -289,9 +289,9 @@ TEST_F(Program, UnknownCommandsAreStatus2WithTheNearest) {
   const ProgramResult unknown = run({"rum", "case.toml"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.err, HasSubstr("found the command \"rum\" (did you mean \"run\"?)"));
-  const ProgramResult later = run({"convert", "a", "b"});
+  const ProgramResult later = run({"sweep", "a", "b"});
   EXPECT_EQ(later.status, 2);
-  EXPECT_THAT(later.err, HasSubstr("the command \"convert\" is not available in this version"));
+  EXPECT_THAT(later.err, HasSubstr("the command \"sweep\" is not available in this version"));
   EXPECT_EQ(run({"run"}).status, 2);
   EXPECT_EQ(run({}).status, 2);
   EXPECT_EQ(run({"run", write("case.toml", circle), "-j", "0"}).status, 2);
@@ -302,7 +302,7 @@ TEST_F(Program, HelpAndVersion) {
   const ProgramResult version = run({"--version"});
   EXPECT_EQ(version.status, 0);
   EXPECT_THAT(version.out, ::testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+\n"));
-  EXPECT_THAT(run({"help"}).out, AllOf(HasSubstr("verify"), HasSubstr("Exit status"), Not(HasSubstr("convert"))));
+  EXPECT_THAT(run({"help"}).out, AllOf(HasSubstr("verify"), HasSubstr("Exit status"), HasSubstr("convert"), Not(HasSubstr("sweep"))));
   EXPECT_THAT(run({"help", "run"}).out, HasSubstr("--set"));
   EXPECT_THAT(run({"help", "case"}).out,
               AllOf(HasSubstr("properties"), HasSubstr("ellipsoid"), Not(HasSubstr("propeller"))));

@@ -19,6 +19,7 @@
 #include "io/iges/file.h"
 #include "tests/geometry/expect_error.h"
 #include "tests/geometry/trimming/faces.h"
+#include "tests/io/iges/boundaries.h"
 #include "tests/io/iges/entities.h"
 
 namespace isorim::io::iges {
@@ -57,51 +58,6 @@ std::vector<const Entity*> entities_of(const File& file, int type) {
     if (entity.type == type) found.push_back(&entity);
   }
   return found;
-}
-
-void append(Boundary<3>& boundary, Boundary<3> more, const std::string& suffix) {
-  for (auto& patch : more.patches) {
-    patch.name += suffix;
-    boundary.patches.push_back(std::move(patch));
-  }
-}
-
-NurbsCurve<2> clockwise_circle(double radius, const Point2& centre) {
-  return reverse(geometry::circle_curve(radius, centre));
-}
-
-/// [-1, 1] x [-1, 1] x [0, 1] with a round hole of radius 1/2 along z.
-Boundary<3> drilled_plate() {
-  Boundary<3> plate = geometry::box({2, 2, 1}, {-1, -1, 0});
-  for (auto& patch : plate.patches) {
-    const NurbsSurface<3> surface = surface_of(patch.shape);
-    const Points<3> points = surface.control_points();
-    if (points.row(2).maxCoeff() > points.row(2).minCoeff()) continue;
-    patch.shape = TrimmedSurface(surface, {domain_loop(surface), {{clockwise_circle(0.25, {0.5, 0.5})}}});
-  }
-  for (auto& patch : geometry::cylinder(0.5, 1.0).patches) {
-    const Points<3> points = surface_of(patch.shape).control_points();
-    if (points.row(2).maxCoeff() == points.row(2).minCoeff()) continue;
-    patch.name = "hole";
-    plate.patches.push_back(patch);
-  }
-  return plate;
-}
-
-/// A net as files give it, Cartesian points and weights.
-NurbsCurve<2> as_from_file(const NurbsCurve<2>& curve) {
-  const Eigen::VectorXd weights = curve.weights();
-  return NurbsCurve<2>::from_points(curve.knots(), curve.control_points(),
-                                    {weights.data(), std::size_t(weights.size())});
-}
-
-/// A disc of a sphere, bounded by a curve that is no parameter line.
-Boundary<3> trimmed_sphere() {
-  Boundary<3> sphere = geometry::sphere(1.0);
-  const NurbsSurface<3> surface = surface_of(sphere.patches[0].shape);
-  const Point2 middle(surface.knots_u().domain().middle(), surface.knots_v().domain().middle());
-  sphere.patches[0].shape = TrimmedSurface(surface, {{{as_from_file(geometry::circle_curve(0.1, middle))}}});
-  return sphere;
 }
 
 TEST(IgesWriter, GlobalSectionSaysWhatTheFileIs) {

@@ -1,0 +1,97 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <ostream>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geometry/errors.h"
+#include "io/cli/commands.h"
+#include "io/iges/writer.h"
+#include "io/results/compute.h"
+#include "io/results/pictures.h"
+
+namespace isorim::cli {
+namespace {
+
+enum class Format { iges, vtu, svg };
+
+constexpr std::array<std::pair<const char*, Format>, 4> extensions{
+    {{".igs", Format::iges}, {".iges", Format::iges}, {".vtu", Format::vtu}, {".svg", Format::svg}}};
+
+Format format_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const auto& [known, format] : extensions) {
+    if (extension == known) return format;
+  }
+  throw InputError(fmt::format("cannot write '{}': found the extension \"{}\", expected one of .igs, .iges, .vtu, .svg",
+                               path.string(), path.extension().string()));
+}
+
+void require_different_files(const ConvertArguments& arguments) {
+  std::error_code missing;
+  if (!std::filesystem::equivalent(arguments.input, arguments.output, missing) || missing) return;
+  throw InputError(fmt::format("'{}' and '{}' are the same file", arguments.input.string(), arguments.output.string()));
+}
+
+std::string counted(int count, const char* one, const char* several) {
+  return fmt::format("{} {}", count, count == 1 ? one : several);
+}
+
+std::string report_text(const io::iges::WriterReport& report) {
+  if (report.curves > 0) return counted(report.curves, "curve", "curves");
+  std::string text;
+  if (report.solids > 0) {
+    text = fmt::format("{} of {}", counted(report.solids, "solid", "solids"),
+                       counted(report.solid_faces, "face", "faces"));
+  }
+  if (report.loose_faces > 0) {
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", counted(report.loose_faces, "loose face", "loose faces"));
+  }
+  return text;
+}
+
+std::string write_iges(const ConvertArguments& arguments, const io::CaseFile& file, const io::AnyModel& model) {
+  io::iges::WriterOptions options;
+  options.form = arguments.faces == FaceForm::loose ? io::iges::Form::faces : io::iges::Form::solids;
+  options.title = file.title();
+  options.unit = arguments.unit.value_or("mm");
+  const io::iges::WriterReport report = std::visit(
+      [&](const auto& known) { return io::iges::write_iges(arguments.output, known.oriented, options); }, model);
+  return fmt::format("{}, unit {}", report_text(report), options.unit);
+}
+
+std::string write_svg(const ConvertArguments& arguments, const io::CaseFile& file, const io::AnyModel& model) {
+  if (std::holds_alternative<io::Model<3>>(model)) {
+    throw InputError(fmt::format("{}: a drawing (.svg) shows regions of the plane, and this is a shape in space",
+                                 arguments.input.string()));
+  }
+  io::write_boundary_svg(arguments.output, file.title(), model);
+  return "a drawing";
+}
+
+std::string write_vtu(const ConvertArguments& arguments, const io::AnyModel& model) {
+  io::write_boundary_vtu(arguments.output, model);
+  return fmt::format("{} elements", io::summarise(model).elements);
+}
+
+}  // namespace
+
+int convert(const ConvertArguments& arguments, std::ostream& out, std::ostream& /*err*/) {
+  const Format format = format_of(arguments.output);
+  require_different_files(arguments);
+  const io::CaseFile file = io::read_case(arguments.input, arguments.overrides);
+  const io::AnyModel model = io::build_model(file);
+  const std::string content = format == Format::iges  ? write_iges(arguments, file, model)
+                              : format == Format::svg ? write_svg(arguments, file, model)
+                                                      : write_vtu(arguments, model);
+  out << fmt::format("{}: {}\n", arguments.output.string(), content);
+  return 0;
+}
+
+}  // namespace isorim::cli
