@@ -153,10 +153,16 @@ std::vector<CutRegion::Crossing> CutRegion::crossings(double y) const {
   std::vector<Crossing> crossings;
   for (const Curve& curve : curves_) {
     const std::vector<std::vector<double>> pieces = split_where(net(curve), y_coordinate, y);
-    for (std::size_t i = 0; i + 1 < pieces.size(); ++i) {
-      const bool up = middle_of(pieces[i], y_coordinate) < middle_of(pieces[i + 1], y_coordinate);
-      crossings.push_back({cartesian(pieces[i + 1], 0, x_coordinate), up ? 1 : -1});
-    }
+    // What lies on the line counts as above it, ends too: then curves that meet on the line agree.
+    bool below = cartesian(pieces.front(), 0, y_coordinate) < y;
+    const auto visit = [&](bool next_is_below, double x) {
+      if (next_is_below != below) crossings.push_back({x, below ? 1 : -1});
+      below = next_is_below;
+    };
+    for (const std::vector<double>& piece : pieces)
+      visit(middle_of(piece, y_coordinate) < y, cartesian(piece, 0, x_coordinate));
+    const std::size_t last = pieces.back().size() / 3 - 1;
+    visit(cartesian(pieces.back(), last, y_coordinate) < y, cartesian(pieces.back(), last, x_coordinate));
   }
   for (const Strip& strip : strips_) {
     if ((strip.first < y) != (strip.last < y)) crossings.push_back({1.0, strip.first < y ? 1 : -1});

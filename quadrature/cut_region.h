@@ -31,7 +31,8 @@ class CutRegion {
   /// a region serves one thread.
   const RegionMoments& moments(const Orders<2>& counts) const;
 
-  /// Points inside, a few on each of `rows` lines across the cell.
+  /// Points inside, a few on each of `rows` lines across the cell (those of a Gauss-Legendre rule; with an even number
+  /// none is likely to run through corners of the region, whose curves meet to rounding only).
   std::vector<geometry::Point2> inner_points(int rows) const;
 
   /// The regions of the two halves of the cell in a direction, each in the coordinates of its own unit cell.

@@ -40,8 +40,10 @@ struct ElementPiece {
 template <int Dim>
 ElementPiece<Dim> whole_element(const geometry::ElementTable<Dim>& table, const geometry::BezierElement<Dim>& element) {
   ElementPiece<Dim> piece{&element, table.nets.data() + element.offset, {}, 0};
-  if (element.is_cut())
-    piece.region = std::make_shared<CutRegion>(table.regions[static_cast<std::size_t>(element.region)]);
+  if (element.is_cut()) {
+    CutRegion region(table.regions[static_cast<std::size_t>(element.region)]);
+    if (region.extent() != CutRegion::Extent::everything) piece.region = std::make_shared<CutRegion>(std::move(region));
+  }
   return piece;
 }
 

@@ -14,9 +14,10 @@ namespace {
 /// Some points of a piece, of a cut one only such as are kept.
 template <int Dim>
 void sample_kept_part(const ElementPiece<Dim>& piece, PieceSamples<Dim>& samples) {
-  constexpr int rows = 5;
+  constexpr int nodes = 5;
+  constexpr int rows = 6;
   Orders<Dim - 1> orders;
-  for (std::size_t d = 0; d < Dim - 1; ++d) orders[d] = piece.element->degree[d] == 1 ? 2 : rows;
+  for (std::size_t d = 0; d < Dim - 1; ++d) orders[d] = piece.element->degree[d] == 1 ? 2 : nodes;
   if constexpr (Dim == 3) {
     if (piece.is_cut()) {
       samples = sample_at(piece, piece.region->inner_points(rows));

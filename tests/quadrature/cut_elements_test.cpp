@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -109,7 +110,7 @@ TEST(CutRegion, AreasToRounding) {
   const auto area = [](const TrimmedRegion& region) { return CutRegion(region).moments({1, 1}).area(); };
   TrimmedRegion disc;
   testing::add_circle(disc, {0.45, 0.55}, 0.4, 4, 1);
-  EXPECT_NEAR(area(disc), 0.16 * pi, 2e-16);
+  EXPECT_NEAR(area(disc), 0.16 * pi, 1e-15);
   testing::add_circle(disc, {0.45, 0.55}, 0.4 - 1e-9, 7, -1);
   EXPECT_NEAR(area(disc), 1e-9 * (0.8 - 1e-9) * pi, 1e-15);
   EXPECT_NEAR(area(testing::polygon({{0, 0}, {1e-6, 0}, {0, 1e-6}})), 5e-13, 1e-27);
@@ -124,6 +125,29 @@ TEST(CutRegion, InnerPointsLieInside) {
   const CutRegion half = CutRegion(plate).halves(0).first;
   for (const Point2& point : half.inner_points(9))
     EXPECT_GT((Point2(0.5 * point[0], point[1]) - Point2(0.3, 0.6)).norm(), 0.25) << point.transpose();
+}
+
+// Corners and turning points of the boundary lie on the middle one of the lines.
+TEST(CutRegion, InnerPointsOfRegionsWithCornersOnTheLines) {
+  const auto on_middle_line = [](const TrimmedRegion& region) {
+    std::vector<double> found;
+    for (const Point2& point : CutRegion(region).inner_points(5)) {
+      if (point[1] == 0.5) found.push_back(point[0]);
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+  };
+  TrimmedRegion disc;
+  testing::add_blob(disc, {0.5, 0.5}, 0.25, 0.0, 1, 4, 1);
+  const std::vector<double> in_disc = on_middle_line(disc);
+  ASSERT_EQ(in_disc.size(), 3U);
+  EXPECT_NEAR(in_disc[0], 0.26, 1e-12);
+  EXPECT_NEAR(in_disc[2], 0.74, 1e-12);
+  // A notch that reaches down to the line from above, and a roof that touches it from below.
+  const std::vector<double> notched = on_middle_line(testing::polygon({{0, 0}, {1, 0}, {1, 1}, {0.5, 0.5}, {0, 1}}));
+  EXPECT_EQ(notched.size() % 3, 0U);
+  EXPECT_GE(notched.size(), 3U);
+  EXPECT_TRUE(on_middle_line(testing::polygon({{0.2, 0.1}, {0.8, 0.1}, {0.5, 0.5}})).empty());
 }
 
 // A bisected region keeps its area, and its halves are what sectors say of the parts.
