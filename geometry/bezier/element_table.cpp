@@ -121,52 +121,69 @@ void narrow(ElementTable<3>& table, CellRegion&& kept) {
   }
 }
 
-/// The elements of a surface, or those of its cells of which something is kept.
-void append_surface(ElementTable<3>& table, const NurbsSurface<3>& surface, FaceCells* kept, std::size_t index,
-                    int orientation) {
-  const Eigen::Index nu = surface.count_u();
-  const std::vector<ExtractionOperator> in_u = extraction_operators(surface.knots_u());
-  const std::vector<ExtractionOperator> in_v = extraction_operators(surface.knots_v());
-  const int p = surface.knots_u().degree();
-  const int q = surface.knots_v().degree();
-  const std::size_t points = static_cast<std::size_t>((p + 1) * (q + 1));
-  const auto cell_count = [&] {
-    if (!kept) return in_u.size() * in_v.size();
-    return kept->state.size() - static_cast<std::size_t>(std::ranges::count(kept->state, FaceCells::outside));
-  };
-  reserve_more(table, cell_count(), points);
-  Strip strip;
-  for (std::size_t row = 0; row < in_v.size(); ++row) {
-    const std::span<const std::int32_t> states =
-        kept ? std::span(kept->state).subspan(row * in_u.size(), in_u.size()) : std::span<const std::int32_t>();
-    const auto is_outside = [](std::int32_t state) { return state == FaceCells::outside; };
-    if (kept && std::ranges::all_of(states, is_outside)) continue;
-    fill_strip(surface, in_v[row], strip);
-    for (std::size_t column = 0; column < in_u.size(); ++column) {
-      const std::int32_t state = kept ? states[column] : FaceCells::whole;
-      if (is_outside(state)) continue;
-      BezierElement<3>& element = append_element(table, index, orientation);
-      element.degree = {static_cast<std::int8_t>(p), static_cast<std::int8_t>(q)};
-      element.domain = {in_u[column].domain, in_v[row].domain};
-      table.nets.resize(table.nets.size() + 4 * points);
-      double* target = table.nets.data() + element.offset;
-      for (Eigen::Index j = 0; j <= q; ++j)
-        extract<3>(strip.net.data() + 4 * (in_u[column].first_function + j * nu), in_u[column].matrix,
-                   target + 4 * j * (p + 1));
-      const double weight = common_weight(surface, strip, in_u[column], in_v[row]);
-      element.polynomial = weight > 0.0;
-      if (element.polynomial) divide_out_weight<3>({target, 4, (p + 1) * (q + 1)}, weight);
-      if (state >= 0) narrow(table, std::move(kept->regions[static_cast<std::size_t>(state)]));
+/// A surface on its way into the table.
+struct SurfaceElements {
+  const NurbsSurface<3>& surface;
+  std::size_t patch = 0;
+  int orientation = 1;
+  std::vector<ExtractionOperator> in_u = extraction_operators(surface.knots_u());
+  std::vector<ExtractionOperator> in_v = extraction_operators(surface.knots_v());
+  Strip strip = {};
+
+  std::size_t control_points() const {
+    return static_cast<std::size_t>((surface.knots_u().degree() + 1) * (surface.knots_v().degree() + 1));
+  }
+};
+
+/// The element of the whole cell, from the strip of its row.
+void append_cell(ElementTable<3>& table, const SurfaceElements& from, const ExtractionOperator& u,
+                 const ExtractionOperator& v) {
+  const Eigen::Index nu = from.surface.count_u();
+  const int p = from.surface.knots_u().degree();
+  const int q = from.surface.knots_v().degree();
+  BezierElement<3>& element = append_element(table, from.patch, from.orientation);
+  element.degree = {static_cast<std::int8_t>(p), static_cast<std::int8_t>(q)};
+  element.domain = {u.domain, v.domain};
+  table.nets.resize(table.nets.size() + 4 * from.control_points());
+  double* target = table.nets.data() + element.offset;
+  for (Eigen::Index j = 0; j <= q; ++j)
+    extract<3>(from.strip.net.data() + 4 * (u.first_function + j * nu), u.matrix, target + 4 * j * (p + 1));
+  const double weight = common_weight(from.surface, from.strip, u, v);
+  element.polynomial = weight > 0.0;
+  if (element.polynomial) divide_out_weight<3>({target, 4, (p + 1) * (q + 1)}, weight);
+}
+
+void append_whole(ElementTable<3>& table, SurfaceElements&& from) {
+  reserve_more(table, from.in_u.size() * from.in_v.size(), from.control_points());
+  for (const ExtractionOperator& v : from.in_v) {
+    fill_strip(from.surface, v, from.strip);
+    for (const ExtractionOperator& u : from.in_u) append_cell(table, from, u, v);
+  }
+}
+
+/// Only the cells of which something is kept.
+void append_kept(ElementTable<3>& table, SurfaceElements&& from, FaceCells&& cells) {
+  const auto is_kept = [](std::int32_t state) { return state != FaceCells::outside; };
+  reserve_more(table, static_cast<std::size_t>(std::ranges::count_if(cells.state, is_kept)), from.control_points());
+  const std::size_t columns = from.in_u.size();
+  for (std::size_t row = 0; row < from.in_v.size(); ++row) {
+    const std::span<const std::int32_t> states = std::span(cells.state).subspan(row * columns, columns);
+    if (std::ranges::none_of(states, is_kept)) continue;
+    fill_strip(from.surface, from.in_v[row], from.strip);
+    for (std::size_t column = 0; column < columns; ++column) {
+      if (!is_kept(states[column])) continue;
+      append_cell(table, from, from.in_u[column], from.in_v[row]);
+      if (states[column] == FaceCells::whole) continue;
+      narrow(table, std::move(cells.regions[static_cast<std::size_t>(states[column])]));
     }
   }
 }
 
 void append_patch(ElementTable<3>& table, const Patch<3>& patch, std::size_t index) {
   const auto* face = std::get_if<TrimmedSurface>(&patch.shape);
-  if (!face) return append_surface(table, surface_of(patch.shape), nullptr, index, patch.orientation);
+  if (!face) return append_whole(table, SurfaceElements{surface_of(patch.shape), index, patch.orientation});
   try {
-    FaceCells cells = cut_into_cells(*face);
-    append_surface(table, face->surface(), &cells, index, patch.orientation);
+    append_kept(table, SurfaceElements{face->surface(), index, patch.orientation}, cut_into_cells(*face));
   } catch (Error& error) {
     error.add_context(fmt::format("patch \"{}\"", patch.name));
     throw;

@@ -186,6 +186,20 @@ TEST(FaceCells, CutElementsAreNarrowedExactly) {
   }
 }
 
+TEST(FaceCells, CutElementsOfPolynomialSurfacesStayPolynomial) {
+  Random random(9);
+  const KnotVector knots = KnotVector::clamped(3, thirds);
+  Points<3> points = Points<3>::Random(3, knots.basis_count() * knots.basis_count());
+  const std::vector<double> weights(static_cast<std::size_t>(points.cols()), 0.3);
+  const NurbsSurface<3> surface = NurbsSurface<3>::from_points(knots, knots, points, weights);
+  const ElementTable<3> table = elements_of({surface, {blob(random, {0.5, 0.5}, 0.5, 2)}});
+  EXPECT_GT(cut_count(table), 4);
+  for (const BezierElement<3>& element : table.elements) {
+    EXPECT_TRUE(element.polynomial);
+    EXPECT_TRUE((table.net_matrix(element).row(3).array() == 1.0).all());
+  }
+}
+
 TEST(FaceCells, PolygonsWithCornersOnTheGrid) {
   Random random(3);
   const NurbsSurface<3> surface = plane_surface(1, thirds, quarters);
