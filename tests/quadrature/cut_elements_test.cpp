@@ -202,6 +202,26 @@ TEST(CutElements, SumsAgreeWithSectors) {
   }
 }
 
+TEST(CutElements, SameBitsForAnyNumberOfThreads) {
+  ElementTable<3> table = testing::random_elements<3>(300, {2, 2}, 3.0, 29);
+  const std::vector<NamedRegion> shapes = regions();
+  for (std::size_t e = 0; e < table.elements.size(); e += 2) {
+    table.elements[e].region = static_cast<std::int32_t>(table.regions.size());
+    table.regions.push_back(shapes[e % shapes.size()].region);
+  }
+  Options options;
+  options.tolerance = 1e-9;
+  options.threads = 1;
+  const BoundarySums<3> one = boundary_sums(table, Point3(0.2, 0.3, 0.4), SumScope::all, options);
+  for (const int threads : {2, 5}) {
+    options.threads = threads;
+    const BoundarySums<3> many = boundary_sums(table, Point3(0.2, 0.3, 0.4), SumScope::all, options);
+    EXPECT_TRUE((one.value == many.value).all()) << threads;
+    EXPECT_TRUE((one.error == many.error).all()) << threads;
+    EXPECT_EQ(one.evaluations, many.evaluations) << threads;
+  }
+}
+
 /// A region of random shape: a wavy outline, holes, or a polygon with very different angles.
 TrimmedRegion random_region(std::mt19937& generator) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
