@@ -18,6 +18,7 @@
 #include "geometry/shapes/swept_solids.h"
 #include "geometry/shapes/transforms.h"
 #include "io/case/curve_builder.h"
+#include "io/case/face_builder.h"
 
 namespace isorim::io {
 namespace {
@@ -178,6 +179,7 @@ BuiltBoundary<2> plane_region(const PlaneRegionKeys& keys) {
 }
 
 BuiltBoundary<2> nurbs_curves(const NurbsKeys& keys) {
+  if (!keys.clip.items.empty()) refuse(keys.where, "found \"clip\"; a shape of the plane cannot be clipped");
   BuiltBoundary<2> result;
   Gatherer gatherer;
   for (std::size_t i = 0; i < keys.curves.size(); ++i) {
@@ -338,17 +340,39 @@ struct SurfaceBuilder {
   Result operator()(const RevolveKeys& keys) const { return revolve_boundary(keys); }
   Result operator()(const ExtrudeKeys& keys) const { return extrude_boundary(keys); }
   Result operator()(const RuledKeys& keys) const {
-    return {{{"ruled", geometry::ruled(single_space_curve(keys.curves[0]), single_space_curve(keys.curves[1]))}}};
+    return face("ruled", geometry::ruled(single_space_curve(keys.curves[0]), single_space_curve(keys.curves[1])), keys);
   }
   Result operator()(const LoftKeys& keys) const { return loft_boundary(keys); }
-  Result operator()(const DiscKeys& keys) const { return {{{"disc", disc_surface(keys)}}}; }
-  Result operator()(const QuadrilateralKeys& keys) const { return {{{"quadrilateral", quadrilateral_surface(keys)}}}; }
-  Result operator()(const NurbsPatchKeys& keys) const { return {{{"nurbs", nurbs_surface(keys)}}}; }
+  Result operator()(const DiscKeys& keys) const { return face("disc", disc_surface(keys), keys); }
+  Result operator()(const QuadrilateralKeys& keys) const {
+    return face("quadrilateral", quadrilateral_surface(keys), keys);
+  }
+  Result operator()(const NurbsPatchKeys& keys) const { return face("nurbs", nurbs_surface(keys), keys); }
+
+ private:
+  static Result face(const char* name, const NurbsSurface<3>& surface, const FaceKeys& keys) {
+    return {{{name, trimmed(surface, keys.trims, keys.where.key("trims", keys.where.place))}}};
+  }
 };
+
+/// Moved, cut and named.
+template <class Keys>
+Boundary<3> finished_solid(Boundary<3> boundary, const Keys& keys) {
+  if constexpr (std::is_base_of_v<SolidKeys, Keys>) {
+    if (!keys.clip.items.empty()) {
+      ShapeKeys moving;
+      moving.transform = keys.transform;
+      boundary = clipped(finished<3>(std::move(boundary), moving), keys.clip, keys.where);
+      prefix_names(boundary, keys.name);
+      return boundary;
+    }
+  }
+  return finished<3>(std::move(boundary), keys);
+}
 
 template <class Keys>
 Boundary<3> surface(const Keys& keys) {
-  return located(keys.where, [&] { return finished<3>(SurfaceBuilder{}(keys), keys); });
+  return located(keys.where, [&] { return finished_solid(SurfaceBuilder{}(keys), keys); });
 }
 
 /// The surfaces of a list; unnamed ones are called "patch_1", ...
@@ -399,10 +423,10 @@ struct GeometryBuilder<2> {
 template <>
 struct GeometryBuilder<3> {
   BuiltBoundary<3> operator()(const NurbsKeys& keys) const {
-    return {located(keys.where, [&] { return finished<3>(surface_list(keys.patches), keys); }), {}};
+    return {located(keys.where, [&] { return finished_solid(surface_list(keys.patches), keys); }), {}};
   }
   BuiltBoundary<3> operator()(const PatchesKeys& keys) const {
-    return {located(keys.where, [&] { return finished<3>(surface_list(keys.patches), keys); }), {}};
+    return {located(keys.where, [&] { return finished_solid(surface_list(keys.patches), keys); }), {}};
   }
   template <class Keys>
   BuiltBoundary<3> operator()(const Keys& keys) const {
@@ -427,6 +451,10 @@ int dimension(const GeometryKeys& geometry) {
         return plane ? 2 : 3;
       },
       geometry);
+}
+
+BuiltBoundary<2> build_region(const RegionKeys& keys) {
+  return region_boundary(keys);
 }
 
 template <int Dim>

@@ -33,4 +33,7 @@ int dimension(const GeometryKeys& keys);
 template <int Dim>
 BuiltBoundary<Dim> build_boundary(const GeometryKeys& keys);
 
+/// The loops of a region of the plane; each must close, without crossing itself, around something.
+BuiltBoundary<2> build_region(const RegionKeys& keys);
+
 }  // namespace isorim::io

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstddef>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -17,8 +18,30 @@ Schema<T> with_common_keys(Schema<T> own) {
   own.key("name", &ShapeKeys::name,
           {.text = "Name of the patch, or the beginning of the names of the patches, in results and messages; made "
                    "from the type if absent."})
-      .key("transform", &ShapeKeys::transform, {.text = "Moves the shape; a list is applied in its order."})
-      .later({"clip"});
+      .key("transform", &ShapeKeys::transform, {.text = "Moves the shape; a list is applied in its order."});
+  if constexpr (std::is_base_of_v<SolidKeys, T>) {
+    own.key(
+        "clip", &SolidKeys::clip,
+        {.text = "Cuts the closed solid, after the transform: { point, normal } takes away what lies on the side to "
+                 "which the normal points; tools of other types keep what is inside or outside. What is cut is closed "
+                 "by patches named \"cap\". A list is applied in its order."});
+  } else {
+    own.later({"clip"});
+  }
+  if constexpr (std::is_base_of_v<FaceKeys, T>) {
+    own.key(
+        "trims", &FaceKeys::trims,
+        {.text = "Loops in the surface's parameters (u, v) that bound what is kept: outer loops, holes in them, and "
+                 "so on by nesting. Holes that lie in no loop (role = \"hole\") are cut out of the whole surface."});
+  }
+  return own;
+}
+
+template <class T>
+Schema<T> with_kept_side(Schema<T> own) {
+  using geometry::KeptSide;
+  own.choice("keep", &T::keep, {{"inside", KeptSide::inside}, {"outside", KeptSide::outside}},
+             {.text = "Which side of the tool is kept.", .presence = required});
   return own;
 }
 
@@ -248,6 +271,61 @@ const Schema<TransformKeys>& schema<TransformKeys>() {
           .key("mirror", &TransformKeys::mirror, {.text = "Mirrors."})
           .key("rotate", &TransformKeys::rotate, {.text = "Turns."})
           .key("translate", &TransformKeys::translate, {.text = "Shifts by this vector."});
+  return declared;
+}
+
+// --- Cutting ----------------------------------------------------------------------------------------------------
+
+template <>
+const Schema<PlaneClipKeys>& schema<PlaneClipKeys>() {
+  static const auto declared =
+      Schema<PlaneClipKeys>("clip_plane", "A plane. A tool with the key \"normal\" needs no type.")
+          .key("normal", &PlaneClipKeys::normal,
+               {.text = "Points to the side that is cut away; of any length.", .presence = required})
+          .key("point", &PlaneClipKeys::point, {.text = "A point of the plane."})
+          .check([](const PlaneClipKeys& plane, const KeyPlace& where, Complaints& complaints) {
+            check_direction(plane.normal, "normal", where, complaints);
+          });
+  return declared;
+}
+
+template <>
+const Schema<SphereClipKeys>& schema<SphereClipKeys>() {
+  static const auto declared = with_kept_side(
+      Schema<SphereClipKeys>("clip_sphere", "A sphere.")
+          .key("radius", &SphereClipKeys::radius, {.text = "Radius.", .range = Range::above(0), .presence = required})
+          .key("centre", &SphereClipKeys::centre, {.text = "Centre."}));
+  return declared;
+}
+
+template <>
+const Schema<CylinderClipKeys>& schema<CylinderClipKeys>() {
+  static const auto declared =
+      with_kept_side(Schema<CylinderClipKeys>("clip_cylinder", "A circular cylinder without ends.")
+                         .key("radius", &CylinderClipKeys::radius,
+                              {.text = "Radius.", .range = Range::above(0), .presence = required})
+                         .key("point", &CylinderClipKeys::point, {.text = "A point of its axis."})
+                         .key("axis", &CylinderClipKeys::axis, {.text = "Direction of its axis, of any length."}))
+          .check([](const CylinderClipKeys& tool, const KeyPlace& where, Complaints& complaints) {
+            check_direction(tool.axis, "axis", where, complaints);
+          });
+  return declared;
+}
+
+template <>
+const Schema<ConeClipKeys>& schema<ConeClipKeys>() {
+  static const auto declared =
+      with_kept_side(Schema<ConeClipKeys>("clip_cone", "A circular cone without end, on one side of its apex.")
+                         .key("half_angle", &ConeClipKeys::half_angle,
+                              {.text = "Between axis and side.",
+                               .unit = "degrees",
+                               .range = {.least = 0, .most = 90, .least_is_open = true, .most_is_open = true},
+                               .presence = required})
+                         .key("apex", &ConeClipKeys::apex, {.text = "Its tip."})
+                         .key("axis", &ConeClipKeys::axis, {.text = "From the tip into the cone, of any length."}))
+          .check([](const ConeClipKeys& tool, const KeyPlace& where, Complaints& complaints) {
+            check_direction(tool.axis, "axis", where, complaints);
+          });
   return declared;
 }
 
@@ -533,6 +611,12 @@ template <>
 const TypeTags& type_tags<LoopKeys>() {
   static const TypeTags tags{
       {"path", "circle", "ellipse", "rectangle", "polygon", "nurbs"}, {"fit", "file"}, "curves", "path"};
+  return tags;
+}
+
+template <>
+const TypeTags& type_tags<ClipKeys>() {
+  static const TypeTags tags{{"plane", "sphere", "cylinder", "cone"}, {}, "normal", "plane"};
   return tags;
 }
 

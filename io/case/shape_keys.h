@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "geometry/intersection/clip.h"
 #include "io/case/schema.h"
 
 /// What a case file says of shapes, as it stands there: angles in degrees, lengths in the unit of the shape. The
@@ -40,6 +41,45 @@ struct ShapeKeys {
   std::string name;
   OneOrMany<TransformKeys> transform;
   KeyPlace where;
+};
+
+// --- Cutting solids -------------------------------------------------------------------------------------------
+
+struct PlaneClipKeys {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  KeyPlace where;
+};
+
+struct SphereClipKeys {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 0.0;
+  geometry::KeptSide keep = geometry::KeptSide::inside;
+  KeyPlace where;
+};
+
+struct CylinderClipKeys {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  double radius = 0.0;
+  geometry::KeptSide keep = geometry::KeptSide::inside;
+  KeyPlace where;
+};
+
+struct ConeClipKeys {
+  Eigen::Vector3d apex = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  double half_angle = 0.0;
+  geometry::KeptSide keep = geometry::KeptSide::inside;
+  KeyPlace where;
+};
+
+using ClipKeys = std::variant<PlaneClipKeys, SphereClipKeys, CylinderClipKeys, ConeClipKeys>;
+
+/// What every shape of space may have.
+struct SolidKeys : ShapeKeys {
+  /// After the transform, one after the other.
+  OneOrMany<ClipKeys> clip;
 };
 
 // --- Curves ---------------------------------------------------------------------------------------------------
@@ -124,36 +164,36 @@ using PlaneRegionKeys = std::variant<RegionKeys, CircleKeys, EllipseKeys, Rectan
 
 // --- Surfaces and solids --------------------------------------------------------------------------------------
 
-struct SphereKeys : ShapeKeys {
+struct SphereKeys : SolidKeys {
   double radius = 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
 };
 
-struct EllipsoidKeys : ShapeKeys {
+struct EllipsoidKeys : SolidKeys {
   Eigen::Vector3d radii = Eigen::Vector3d::Zero();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
 };
 
-struct TorusKeys : ShapeKeys {
+struct TorusKeys : SolidKeys {
   double major_radius = 0.0;
   double minor_radius = 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
 };
 
-struct CylinderKeys : ShapeKeys {
+struct CylinderKeys : SolidKeys {
   double radius = 0.0;
   double height = 0.0;
   Eigen::Vector3d base = Eigen::Vector3d::Zero();
 };
 
-struct ConeKeys : ShapeKeys {
+struct ConeKeys : SolidKeys {
   std::optional<double> radius;
   std::optional<Eigen::Vector2d> radii;
   double height = 0.0;
   Eigen::Vector3d base = Eigen::Vector3d::Zero();
 };
 
-struct BoxKeys : ShapeKeys {
+struct BoxKeys : SolidKeys {
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
   Eigen::Vector3d corner = Eigen::Vector3d::Zero();
 };
@@ -168,7 +208,7 @@ struct AxisKeys {
 enum class SweepEnds { open, caps };
 
 /// Exactly one of `profile` and `region`.
-struct RevolveKeys : ShapeKeys {
+struct RevolveKeys : SolidKeys {
   std::vector<CurveKeys> profile;
   std::optional<PlaneRegionKeys> region;
   AxisKeys axis;
@@ -177,33 +217,39 @@ struct RevolveKeys : ShapeKeys {
 };
 
 /// Exactly one of `profile` and `region`.
-struct ExtrudeKeys : ShapeKeys {
+struct ExtrudeKeys : SolidKeys {
   std::vector<CurveKeys> profile;
   std::optional<PlaneRegionKeys> region;
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();
 };
 
-struct RuledKeys : ShapeKeys {
+/// A single surface of which a part may be kept.
+struct FaceKeys : ShapeKeys {
+  /// In the parameters of the surface; without loops all of it is kept.
+  std::vector<LoopKeys> trims;
+};
+
+struct RuledKeys : FaceKeys {
   std::vector<CurveKeys> curves;
 };
 
-struct LoftKeys : ShapeKeys {
+struct LoftKeys : SolidKeys {
   std::vector<CurveKeys> sections;
   int degree = 3;
   SweepEnds ends = SweepEnds::open;
 };
 
-struct DiscKeys : ShapeKeys {
+struct DiscKeys : FaceKeys {
   double radius = 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
 };
 
-struct QuadrilateralKeys : ShapeKeys {
+struct QuadrilateralKeys : FaceKeys {
   std::vector<Coordinates> corners;
 };
 
-struct NurbsPatchKeys : ShapeKeys {
+struct NurbsPatchKeys : FaceKeys {
   Eigen::Vector2i degrees = Eigen::Vector2i::Zero();
   std::vector<double> knots_u;
   std::vector<double> knots_v;
@@ -215,12 +261,12 @@ struct NurbsPatchKeys : ShapeKeys {
 using SurfaceKeys = std::variant<NurbsPatchKeys, QuadrilateralKeys, DiscKeys, RevolveKeys, ExtrudeKeys, RuledKeys,
                                  LoftKeys, SphereKeys, EllipsoidKeys, TorusKeys, CylinderKeys, ConeKeys, BoxKeys>;
 
-struct PatchesKeys : ShapeKeys {
+struct PatchesKeys : SolidKeys {
   std::vector<SurfaceKeys> patches;
 };
 
 /// Exactly one of `curves` (a region of the plane) and `patches` (surfaces in space).
-struct NurbsKeys : ShapeKeys {
+struct NurbsKeys : SolidKeys {
   std::vector<LoopOf<NurbsCurveKeys>> curves;
   std::vector<NurbsPatchKeys> patches;
 };

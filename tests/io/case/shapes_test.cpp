@@ -148,6 +148,40 @@ const std::vector<ShapeCase> space{
      1.5 + std::sqrt(3.0) / 2,
      1.0 / 6,
      {0.25, 0.25, 0.25}},
+    {"CutInAList",
+     "type = 'patches'\npatches = [{ type = 'box', size = [1, 1, 1], clip = { point = [0, 0, 0.5], normal = [0, 0, 1] "
+     "} "
+     "}]",
+     4,
+     0.5,
+     {0.5, 0.5, 0.25}},
+    {"FacesWithTrims",
+     // A square frame around a round hole: two trimmed faces, the hole told by its nesting and by its role.
+     "type = 'patches'\npatches = ["
+     "{ type = 'quadrilateral', corners = [[0,0,0], [4,0,0], [4,4,0], [0,4,0]], trims = [{ type = 'rectangle', size = "
+     "[0.75, 0.75], corner = [0.125, 0.125] }, { type = 'circle', radius = 0.25, centre = [0.5, 0.5] }] },"
+     "{ type = 'quadrilateral', corners = [[0,0,1], [4,0,1], [4,4,1], [0,4,1]], trims = [{ type = 'circle', radius = "
+     "0.25, centre = [0.5, 0.5], role = 'hole' }, { type = 'rectangle', size = [0.75, 0.75], corner = [0.125, 0.125], "
+     "role = 'outer' }] },"
+     "{ type = 'extrude', profile = [{ type = 'circle', radius = 1, centre = [2, 2] }], vector = [0, 0, 1] },"
+     "{ type = 'extrude', profile = [{ type = 'rectangle', size = [3, 3], corner = [0.5, 0.5] }], vector = [0, 0, 1] "
+     "}]",
+     2 * (9 - pi) + 2 * pi + 12,
+     9 - pi,
+     {2, 2, 0.5}},
+    {"MovedThenCut",
+     "type = 'sphere'\nradius = 1\ntransform = { translate = [5, 0, 0] }\nclip = { normal = [1, 0, 0], point = [5, 0, "
+     "0] }",
+     3 * pi,
+     2 * pi / 3,
+     {5 - 0.375, 0, 0}},
+    {"CutTwice",
+     "type = 'box'\nsize = [2, 2, 1]\ncorner = [-1, -1, 0]\nclip = [{ type = 'cylinder', radius = 0.5, keep = "
+     "'outside' }, "
+     "{ type = 'plane', normal = [1, 0, 0] }]",
+     4 - pi / 4 + 2 * 1 + 2 + 1 + pi / 2,
+     2 - pi / 8,
+     {-(1 - 1.0 / 12) / (2 - pi / 8), 0, 0.5}},
 };
 
 std::string shape_name(const ::testing::TestParamInfo<ShapeCase>& info) {
@@ -179,6 +213,10 @@ TEST(PatchNames, AreTheAuthorsOrMade) {
   EXPECT_EQ(names("type = 'region'\nloops = [{ type = 'circle', radius = 1 }, { curves = [{ type = 'arc', radius = "
                   "0.5, angles = [0, 180], name = 'bow' }, { type = 'line', from = [-0.5, 0], to = [0.5, 0] }] }]"),
             (Names{"loop_1", "loop_2_bow", "loop_2_curve_2"}));
+  EXPECT_EQ(names("type = 'sphere'\nradius = 1\nclip = { normal = [0, 0, 1] }"), (Names{"sphere", "cap"}));
+  EXPECT_EQ(
+      names("type = 'sphere'\nradius = 1\nname = 'hull'\nclip = [{ normal = [0, 0, 1] }, { normal = [1, 0, 0] }]"),
+      (Names{"hull_sphere", "hull_cap", "hull_cap_2"}));
 }
 
 }  // namespace

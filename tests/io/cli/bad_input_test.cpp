@@ -245,6 +245,60 @@ const std::vector<BadCase> shapes{
     {"ScaledToNothing", circle + "transform = { scale = 0 }\n", {"geometry.transform.scale"}},
 };
 
+const std::string cube = "[geometry]\ntype = 'box'\nsize = [1, 1, 1]\n";
+
+/// A square face with the loops given.
+std::string face(const std::string& loops) {
+  return "[geometry]\ntype = 'patches'\n[[geometry.patches]]\ntype = 'quadrilateral'\n"
+         "corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\ntrims = [" +
+         loops + "]\n";
+}
+
+const std::vector<BadCase> cuts{
+    {"ClipWithoutNormal",
+     cube + "clip = { point = [0, 0, 0] }\n",
+     {"case.toml:4: geometry.clip: the key \"type\" is missing; expected one of \"plane\", \"sphere\", "
+      "\"cylinder\", \"cone\""}},
+    {"ClipByAnUnknownTool",
+     cube + "clip = { type = 'cilinder', radius = 1, keep = 'inside' }\n",
+     {"geometry.clip.type: found the text \"cilinder\"", "(did you mean \"cylinder\"?)"}},
+    {"ClipWithoutASide",
+     cube + "clip = { type = 'sphere', radius = 1 }\n",
+     {"geometry.clip: the key \"keep\" (text) is missing"}},
+    {"ClipWithoutADirection",
+     cube + "clip = { normal = [0, 0, 0] }\n",
+     {"geometry.clip: the key \"normal\" is [0, 0, 0]; expected a direction"}},
+    {"ClipByAConeThatIsAPlane",
+     cube + "clip = { type = 'cone', half_angle = 90, keep = 'inside' }\n",
+     {"geometry.clip.half_angle: found 90; expected a number > 0 and < 90"}},
+    {"ClipOfEverything",
+     cube + "clip = [{ normal = [0, 0, 1], point = [0, 0, 0.5] }, { normal = [0, 0, 1] }]\n",
+     {"case.toml:4: geometry.clip[2]: clip: nothing is left of the solid"}},
+    {"ClipOfAnOpenBoundary",
+     "[geometry]\ntype = 'patches'\nclip = { normal = [1, 0, 0] }\n[[geometry.patches]]\ntype = 'disc'\nradius = 1\n",
+     {"geometry: the boundary is not closed: 'patch_1' has a free edge"}},
+    {"ClipOfCurves",
+     "[geometry]\ntype = 'nurbs'\nclip = { normal = [1, 0, 0] }\n[[geometry.curves]]\ndegree = 1\nknots = [0, 0, 1, 2, "
+     "2]\n"
+     "points = [[0, 0], [1, 0], [0, 0]]\n",
+     {"a shape of the plane cannot be clipped"}},
+    {"TrimOutsideTheDomain",
+     face("{ type = 'circle', radius = 0.5, centre = [0.6, 0.5] }"),
+     {"geometry.patches[1].trims: curve 1 of loop 1 leaves the surface's domain"}},
+    {"TrimsThatCross",
+     face("{ type = 'circle', radius = 0.2, centre = [0.4, 0.5] }, { type = 'circle', radius = 0.2, centre = [0.6, "
+          "0.5] }"),
+     {"geometry.patches[1].trims: two loops cross: patches 'loop_1' and 'loop_2' at (0.5, 0."}},
+    {"TrimThatIsOpen",
+     face("{ curves = [{ type = 'line', from = [0, 0], to = [1, 0] }] }"),
+     {"case.toml:6: geometry.patches[1].trims[1]: ", "the boundary is not closed"}},
+    {"TrimInTheWrongRole",
+     face("{ type = 'circle', radius = 0.4, centre = [0.5, 0.5] }, { type = 'circle', radius = 0.2, centre = [0.5, "
+          "0.5], "
+          "role = 'outer' }"),
+     {"geometry.patches[1].trims[2]: the role is \"outer\", but the loop lies inside another one"}},
+};
+
 const std::vector<BadCase> quantities{
     {"IntegrandThatDoesNotParse",
      circle + "[[integral]]\nname = 'a'\nintegrand = 'x + * y'\n",
@@ -316,6 +370,7 @@ INSTANTIATE_TEST_SUITE_P(Keys, BadInput, ::testing::ValuesIn(keys), case_name);
 INSTANTIATE_TEST_SUITE_P(Types, BadInput, ::testing::ValuesIn(types), case_name);
 INSTANTIATE_TEST_SUITE_P(Ranges, BadInput, ::testing::ValuesIn(ranges), case_name);
 INSTANTIATE_TEST_SUITE_P(Shapes, BadInput, ::testing::ValuesIn(shapes), case_name);
+INSTANTIATE_TEST_SUITE_P(Cuts, BadInput, ::testing::ValuesIn(cuts), case_name);
 INSTANTIATE_TEST_SUITE_P(Quantities, BadInput, ::testing::ValuesIn(quantities), case_name);
 
 class SeveralFaults : public ProgramTest {};
