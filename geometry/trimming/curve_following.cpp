@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <utility>
+
+#include "geometry/bezier/subdivision.h"
+#include "geometry/spline/bspline.h"
 
 namespace isorim::geometry {
 namespace {
@@ -54,6 +59,34 @@ std::optional<double> knot_inside(const ParameterRectangle& rectangle, int d, do
   return best;
 }
 
+/// Looks for a place where a curve comes within `reach` of a point, by bisecting its Bézier segments.
+class PassageSearch {
+ public:
+  PassageSearch(Point3 point, double reach) : point_(std::move(point)), reach_(reach) {}
+
+  std::optional<double> run(const Eigen::MatrixXd& net, Interval domain) {
+    const Eigen::Matrix3Xd points = net.topRows<3>().array().rowwise() / net.row(3).array();
+    const Point3 lower = points.rowwise().minCoeff();
+    const Point3 upper = points.rowwise().maxCoeff();
+    if ((lower - point_).cwiseMax(point_ - upper).cwiseMax(0.0).norm() > reach_) return std::nullopt;
+    constexpr int most_parts = 2000;
+    if ((upper - lower).norm() <= reach_ || ++parts_ > most_parts) return domain.middle();
+    const int degree = static_cast<int>(net.cols()) - 1;
+    const auto [left, right] =
+        subdivide({net.data(), static_cast<std::size_t>(net.size())}, 4, std::span<const int>(&degree, 1), 0);
+    const auto half = [&](const std::vector<double>& data) -> Eigen::MatrixXd {
+      return Eigen::Map<const Eigen::MatrixXd>(data.data(), 4, net.cols());
+    };
+    if (const std::optional<double> t = run(half(left), {domain.first, domain.middle()})) return t;
+    return run(half(right), {domain.middle(), domain.last});
+  }
+
+ private:
+  Point3 point_;
+  double reach_;
+  int parts_ = 0;
+};
+
 }  // namespace
 
 CurveFollower::CurveFollower(const PointInverter& points, const NurbsCurve<3>& curve, double size)
@@ -75,18 +108,30 @@ std::optional<double> CurveFollower::inner_pole() const {
     const bool is_far = ((controls->rowwise().minCoeff() - pole).array() > pole_reach_).any() ||
                         ((pole - controls->rowwise().maxCoeff()).array() > pole_reach_).any();
     if (is_far) continue;
-    // A curve that starts or ends at the pole is nearest there: look at the rest.
+    // What starts or ends at the pole does not run through it there.
     const Interval domain = curve_.domain();
     const double inset = 1e-3 * domain.length();
-    const bool starts = (evaluate(curve_, domain.first) - pole).norm() <= pole_reach_;
-    const bool ends = (evaluate(curve_, domain.last) - pole).norm() <= pole_reach_;
-    const Interval rest{domain.first + (starts ? inset : 0.0), domain.last - (ends ? inset : 0.0)};
-    const ClosestCurvePoint<3> nearest = closest_point(starts || ends ? restrict_to(curve_, rest) : curve_, pole);
-    if (nearest.distance > pole_reach_) continue;
-    const double reach_in_t = 1e-9 * domain.length();
-    if (nearest.u > rest.first + reach_in_t && nearest.u < rest.last - reach_in_t) return nearest.u;
+    const Interval inside{domain.first + inset, domain.last - inset};
+    PassageSearch search(pole, pole_reach_);
+    const NurbsCurve<3> rest = restrict_to(curve_, inside);
+    for (const BezierSegment& segment : bezier_segments({rest.knots(), rest.homogeneous()}))
+      if (const std::optional<double> t = search.run(segment.coefficients, segment.domain)) return nearest(*t, pole);
   }
   return std::nullopt;
+}
+
+double CurveFollower::nearest(double t, const Point3& point) const {
+  const Interval domain = curve_.domain();
+  for (int k = 0; k < 20; ++k) {
+    const CurveJet<3> jet = evaluate_jet(curve_, t);
+    const double speed = jet.du.squaredNorm();
+    if (!(speed > 0.0)) break;
+    const double step = -(jet.point - point).dot(jet.du) / speed;
+    if (!domain.contains(t + step) || std::abs(step) > 1e-3 * domain.length()) break;
+    t += step;
+    if (std::abs(step) <= 1e-15 * domain.length()) break;
+  }
+  return t;
 }
 
 FollowedPoint CurveFollower::completed(double t, const Point3& target, const Vector3& derivative,
@@ -132,7 +177,7 @@ FollowedPoint CurveFollower::step(const FollowedPoint& from, double t, int depth
     const double middle = 0.5 * (from.t + t);
     return step(step(from, middle, depth + 1), t, depth + 1);
   }
-  if (is_near) return next;
+  if (is_near || searches_left_-- <= 0) return next;
   InvertedPoint found = points_.locate(next.target);
   if (found.distance > 0.5 * next.distance) return next;
   for (int d = 0; d < 2; ++d)

@@ -65,7 +65,11 @@ class Fit {
   Fit(const CurveFollower& follower, const InversionOptions& options) : follower_(follower), options_(options) {}
 
   /// Appends pieces from the first of the followed points to the last, over which curve and surface are smooth.
-  void add(std::span<const FollowedPoint> points) { add(points, 0); }
+  void add(std::span<const FollowedPoint> points) {
+    // Once a span was hopeless, the others are tried with less effort.
+    last_allowed_ = pieces_.size() + (misfit_ > 0.0 ? 8 : 128);
+    add(points, 0);
+  }
 
   NurbsCurve<2> curve() const {
     std::vector<double> knots(fit_degree + 1, breaks_.front());
@@ -87,23 +91,43 @@ class Fit {
     const FollowedPoint& from = points.front();
     const FollowedPoint& to = points.back();
     if (from.pole >= 0 && to.pole >= 0) {
-      divide(points, depth);
+      add_between_poles(points, depth);
       return;
     }
     const Coefficients piece = interpolate(points);
     const double error = largest_error(piece, from, to);
     constexpr int deepest = 24;
     const double extent = (to.target - from.target).norm();
-    const bool is_done = error <= options_.tolerance || depth >= deepest ||
+    const bool is_done = error <= options_.tolerance || depth >= deepest || pieces_.size() >= last_allowed_ ||
                          (depth > 4 && points.size() == 2 && extent < 1e-9 * options_.size);
     if (!is_done) {
       divide(points, depth);
       return;
     }
     if (error > options_.tolerance) misfit_ = std::max(misfit_, error);
-    if (breaks_.empty()) breaks_.push_back(from.t);
-    breaks_.push_back(to.t);
+    append(piece, from.t, to.t);
+  }
+
+  void append(const Coefficients& piece, double from, double to) {
+    if (breaks_.empty()) breaks_.push_back(from);
+    // Bisected down to neighbouring numbers.
+    if (!(breaks_.back() < to)) return;
+    breaks_.push_back(to);
     pieces_.push_back(piece);
+  }
+
+  /// From pole to pole; a piece that stays at one is a line along its side.
+  void add_between_poles(std::span<const FollowedPoint> points, int depth) {
+    const bool stays = points.size() == 2 && points[0].pole == points[1].pole &&
+                       follower_.between(points[0], points[1], 0.5 * (points[0].t + points[1].t)).pole >= 0;
+    if (!stays) {
+      divide(points, depth);
+      return;
+    }
+    Coefficients line;
+    for (int i = 0; i <= fit_degree; ++i)
+      line.col(i) = points[0].uv + (points[1].uv - points[0].uv) * i / static_cast<double>(fit_degree);
+    append(line, points[0].t, points[1].t);
   }
 
   void divide(std::span<const FollowedPoint> points, int depth) {
@@ -182,6 +206,8 @@ class Fit {
   const InversionOptions& options_;
   std::vector<double> breaks_;
   std::vector<Coefficients> pieces_;
+  /// How many pieces there may be at the end of the present span: against curves that no fit gets near.
+  std::size_t last_allowed_ = 0;
   double deviation_ = 0.0;
   Point3 farthest_ = Point3::Zero();
   double misfit_ = 0.0;
@@ -259,16 +285,19 @@ std::optional<NurbsCurve<2>> CurveInverter::affine_image(const NurbsCurve<3>& cu
   return NurbsCurve<2>(curve.knots(), std::move(net));
 }
 
-void CurveInverter::append(const NurbsCurve<3>& curve, InvertedCurve& result) const {
+void CurveInverter::append(const NurbsCurve<3>& curve, int depth, InvertedCurve& result) const {
   const CurveFollower follower(points_, curve, options_.size);
-  const std::optional<double> through_pole = follower.inner_pole();
+  constexpr int most_splits = 4;
+  const std::optional<double> through_pole = depth < most_splits ? follower.inner_pole() : std::nullopt;
   if (through_pole) {
     const auto [before, after] = split(curve, *through_pole);
-    append(before, result);
-    if (!result.curves.empty()) append(after, result);
+    append(before, depth + 1, result);
+    if (result.deviation <= options_.largest_deviation) append(after, depth + 1, result);
     return;
   }
   const std::vector<FollowedPoint> points = follower.follow();
+  const bool is_at_pole = std::all_of(points.begin(), points.end(), [](const FollowedPoint& p) { return p.pole >= 0; });
+  if (is_at_pole) return;
   double deviation = 0.0;
   for (const FollowedPoint& p : points) {
     deviation = std::max(deviation, p.distance);
@@ -281,8 +310,9 @@ void CurveInverter::append(const NurbsCurve<3>& curve, InvertedCurve& result) co
     result.curves.clear();
     return;
   }
-  const double along = std::max(4.0 * options_.tolerance, 3.0 * deviation);
-  const double snap = std::max(1e-9 * options_.size, 3.0 * deviation);
+  // A curve is known no better than it keeps to the surface; sides are where files want it to be.
+  const double along = std::max(4.0 * options_.tolerance, deviation);
+  const double snap = std::max(1e-9 * options_.size, 2.0 * deviation);
   for (int d = 0; d < 2; ++d) {
     const std::optional<double> value = constant_parameter(points, rectangle_, d, along, snap);
     if (!value || !is_monotone(points, 1 - d, rectangle_.tolerance()[1 - d])) continue;
@@ -318,7 +348,7 @@ InvertedCurve CurveInverter::invert(const NurbsCurve<3>& curve) const {
     if (result.deviation <= options_.largest_deviation) result.curves.push_back(std::move(*image));
     return result;
   }
-  append(curve, result);
+  append(curve, 0, result);
   return result;
 }
 

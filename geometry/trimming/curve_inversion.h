@@ -23,7 +23,7 @@ struct InversionOptions {
 struct InvertedCurve {
   /// Continuous, in the direction of the curve in space; at any period of the closed directions and perhaps over its
   /// end, never outside the open sides. More than one if the curve runs through a pole: each ends there, on the pole's
-  /// side. Empty if the curve was given up.
+  /// side. None if the curve was given up, its deviation being too large, or if it never leaves a pole.
   std::vector<NurbsCurve<2>> curves;
   /// The largest distance of the curve in space from the surface, and where it is.
   double deviation = 0.0;
@@ -47,7 +47,7 @@ class CurveInverter {
 
  private:
   std::optional<NurbsCurve<2>> affine_image(const NurbsCurve<3>& curve) const;
-  void append(const NurbsCurve<3>& curve, InvertedCurve& result) const;
+  void append(const NurbsCurve<3>& curve, int depth, InvertedCurve& result) const;
 
   const ParameterRectangle& rectangle_;
   InversionOptions options_;

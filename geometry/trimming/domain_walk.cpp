@@ -99,7 +99,17 @@ std::vector<PlanePiece> plane_pieces(const LoopRun& curves) {
 double signed_area(const LoopRun& curves, const ParameterRectangle& rectangle) {
   const std::vector<PlanePiece> pieces = plane_pieces(curves);
   if (pieces.empty()) return 0.0;
-  return doubled_signed_area(pieces, least_area * rectangle.lengths().prod()).value;
+  Point2 lower = pieces.front().lower;
+  Point2 upper = pieces.front().upper;
+  for (const PlanePiece& piece : pieces) {
+    lower = lower.cwiseMin(piece.lower);
+    upper = upper.cwiseMax(piece.upper);
+  }
+  const Vector2 box = upper - lower;
+  const Vector2 whole = rectangle.lengths();
+  const double least = 1e-9 * box.prod() + 1e-14 * (box.x() * whole.y() + box.y() * whole.x());
+  const double area = doubled_signed_area(pieces, 0.25 * least).value;
+  return std::abs(area) <= least ? 0.0 : area;
 }
 
 std::optional<ClosedLoop> close_directly(const CoveringLoop& loop, const ParameterRectangle& rectangle) {
@@ -115,7 +125,7 @@ std::optional<ClosedLoop> close_directly(const CoveringLoop& loop, const Paramet
   if (!shift) return std::nullopt;
   for (LoopCurve& curve : closed.curves) curve = moved(std::move(curve), *shift);
   closed.area = signed_area(closed.curves, rectangle);
-  if (std::abs(closed.area) <= least_area * rectangle.lengths().prod()) return std::nullopt;
+  if (closed.area == 0.0) return std::nullopt;
   return closed;
 }
 
@@ -423,7 +433,7 @@ WalkedLoops walk_domain(const std::vector<CoveringLoop>& loops, const ParameterR
       continue;
     }
     const double area = signed_area(chain, rectangle);
-    if (std::abs(area) > least_area * rectangle.lengths().prod()) result.loops.push_back({std::move(chain), area});
+    if (area != 0.0) result.loops.push_back({std::move(chain), area});
   }
   Walk walk(rectangle, std::move(open));
   if (!walk.can_run()) {

@@ -17,9 +17,6 @@ struct ClosedLoop {
   double area = 0.0;
 };
 
-/// Doubled signed areas below this part of the rectangle's are none.
-inline constexpr double least_area = 1e-13;
-
 /// The loop itself, moved by whole periods into the rectangle, its interruptions at poles closed by straight lines
 /// along them. Empty if it does not fit, winds around the surface, or encloses nothing.
 std::optional<ClosedLoop> close_directly(const CoveringLoop& loop, const ParameterRectangle& rectangle);
@@ -45,7 +42,7 @@ WalkedLoops walk_domain(const std::vector<CoveringLoop>& loops, const ParameterR
 /// The loop's Bézier pieces, ends that do not meet joined by straight lines.
 std::vector<PlanePiece> plane_pieces(const LoopRun& curves);
 
-/// Doubled signed area of the closed chain.
+/// Doubled signed area of the closed chain; zero if it is there and back, to within 1e-9 of the chain's box.
 double signed_area(const LoopRun& curves, const ParameterRectangle& rectangle);
 
 }  // namespace isorim::geometry

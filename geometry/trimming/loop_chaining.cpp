@@ -28,6 +28,7 @@ struct Strand {
   LoopCurve curve;
   Point3 start;
   Point3 end;
+  bool is_taken = false;
 };
 
 class LoopOrder {
@@ -36,27 +37,26 @@ class LoopOrder {
     for (LoopCurve& curve : curves) {
       const Point3 start = rectangle.point(start_of(curve.curve));
       const Point3 end = rectangle.point(end_of(curve.curve));
-      waiting_.push_back({std::move(curve), start, end});
+      strands_.push_back({std::move(curve), start, end});
     }
   }
 
   /// The given order wherever it holds; else the nearest end comes next.
   std::vector<LoopCurve> ordered() {
     std::vector<LoopCurve> result;
-    const std::size_t count = waiting_.size();
     std::size_t reversals = 0;
     take(0, false, result);
-    while (!waiting_.empty()) {
+    while (first_ < strands_.size()) {
       const auto [index, is_reversed] = next();
-      if (index != 0) is_reordered = true;
+      if (index != first_) is_reordered = true;
       reversals += is_reversed ? 1 : 0;
       take(index, is_reversed, result);
     }
-    if (2 * reversals > count) {
+    if (2 * reversals > strands_.size()) {
       // The first one ran against all the others.
       std::reverse(result.begin(), result.end());
       for (LoopCurve& curve : result) curve = reversed(std::move(curve));
-      reversals = count - reversals;
+      reversals = strands_.size() - reversals;
     }
     reversed_pieces = static_cast<int>(reversals);
     return result;
@@ -67,31 +67,36 @@ class LoopOrder {
 
  private:
   void take(std::size_t index, bool is_reversed, std::vector<LoopCurve>& result) {
-    Strand strand = std::move(waiting_[index]);
-    waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(index));
+    Strand& strand = strands_[index];
+    strand.is_taken = true;
+    while (first_ < strands_.size() && strands_[first_].is_taken) ++first_;
     end_ = is_reversed ? strand.start : strand.end;
     result.push_back(is_reversed ? reversed(std::move(strand.curve)) : std::move(strand.curve));
   }
 
   std::pair<std::size_t, bool> next() const {
-    const double as_given = (waiting_.front().start - end_).norm();
-    std::pair<std::size_t, bool> best{0, false};
+    const double as_given = (strands_[first_].start - end_).norm();
+    std::pair<std::size_t, bool> best{first_, false};
     if (as_given <= 1e-6 * size_) return best;
-    double nearest = as_given;
-    const auto consider = [&](std::size_t index, bool is_reversed, double distance) {
-      // Only what is clearly nearer than the given order.
-      if (distance >= 0.5 * nearest || (index != best.first && distance >= 0.5 * as_given)) return;
+    // Only what is clearly nearer than the given order.
+    double nearest = 0.5 * as_given;
+    const auto consider = [&](std::size_t index, bool is_reversed, const Point3& point) {
+      const double distance = (point - end_).norm();
+      if (distance >= nearest) return;
       nearest = distance;
       best = {index, is_reversed};
     };
-    for (std::size_t i = 0; i < waiting_.size(); ++i) {
-      consider(i, false, (waiting_[i].start - end_).norm());
-      consider(i, true, (waiting_[i].end - end_).norm());
+    for (std::size_t i = first_; i < strands_.size(); ++i) {
+      if (strands_[i].is_taken) continue;
+      consider(i, false, strands_[i].start);
+      consider(i, true, strands_[i].end);
     }
     return best;
   }
 
-  std::vector<Strand> waiting_;
+  std::vector<Strand> strands_;
+  /// The first that is not taken.
+  std::size_t first_ = 0;
   Point3 end_ = Point3::Zero();
   double size_;
 };

@@ -29,20 +29,41 @@ void reverse_in_place(ClosedLoop& loop) {
   loop.area = -loop.area;
 }
 
+/// The box of a loop's control points.
+struct LoopBox {
+  Point2 lower;
+  Point2 upper;
+
+  explicit LoopBox(const std::vector<PlanePiece>& pieces) : lower(pieces[0].lower), upper(pieces[0].upper) {
+    for (const PlanePiece& piece : pieces) {
+      lower = lower.cwiseMin(piece.lower);
+      upper = upper.cwiseMax(piece.upper);
+    }
+  }
+
+  bool contains(const Point2& point) const {
+    return (point.array() >= lower.array()).all() && (point.array() <= upper.array()).all();
+  }
+};
+
 /// How many of the other loops each one lies in.
 std::vector<int> nesting_depths(const std::vector<ClosedLoop>& loops, const ParameterRectangle& rectangle) {
   std::vector<std::vector<PlanePiece>> pieces;
-  pieces.reserve(loops.size());
-  for (const ClosedLoop& loop : loops) pieces.push_back(plane_pieces(loop.curves));
+  std::vector<LoopBox> boxes;
+  for (const ClosedLoop& loop : loops) {
+    pieces.push_back(plane_pieces(loop.curves));
+    boxes.emplace_back(pieces.back());
+  }
   const double resolution = 1e-9 * rectangle.lengths().minCoeff();
   std::vector<int> depths(loops.size(), 0);
   for (std::size_t i = 0; i < loops.size(); ++i)
     for (std::size_t other = 0; other < loops.size(); ++other) {
-      if (other == i) continue;
       // A loop that lies in another is the smaller one; it may touch it, so that not every point tells.
-      if (std::abs(loops[i].area) > std::abs(loops[other].area)) continue;
+      if (other == i || std::abs(loops[i].area) > std::abs(loops[other].area)) continue;
       for (const PlanePiece& piece : pieces[i]) {
-        const std::optional<int> turns = winding_number(pieces[other], evaluate(piece, 0.5), resolution);
+        const Point2 point = evaluate(piece, 0.5);
+        if (!boxes[other].contains(point)) break;
+        const std::optional<int> turns = winding_number(pieces[other], point, resolution);
         if (!turns) continue;
         if (*turns != 0) ++depths[i];
         break;
@@ -185,11 +206,10 @@ Attempt attempt(const std::vector<CoveringLoop>& loops, const Turns& turns, cons
     return std::accumulate(result.walked.loops.begin(), result.walked.loops.end(), 0.0,
                            [](double sum, const ClosedLoop& loop) { return sum + loop.area; });
   };
-  const double least = least_area * rectangle.lengths().prod();
   const bool may_add_rectangle = face.natural_outer_boundary || rectangle.has_no_open_side();
-  if (result.walked.bridged_ends == 0 && area() <= least && may_add_rectangle)
+  if (result.walked.bridged_ends == 0 && area() <= 0.0 && may_add_rectangle)
     result.walked.loops.insert(result.walked.loops.begin(), rectangle_loop(rectangle));
-  result.is_valid = result.walked.is_consistent && area() > least;
+  result.is_valid = result.walked.is_consistent && area() > 0.0;
   return result;
 }
 

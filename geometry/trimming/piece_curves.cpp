@@ -39,28 +39,54 @@ std::vector<double> sample_parameters(const KnotVector& knots) {
   return parameters;
 }
 
-/// The distance of a point from a curve, by Newton's method from `u`, which moves to the foot; by closest_point() if
-/// that ends farther away than `sure`.
-double distance_from(const NurbsCurve<3>& curve, const Point3& target, double sure, double& u) {
-  const Interval domain = curve.domain();
-  CurveJet<3> jet = evaluate_jet(curve, u);
-  for (int k = 0; k < 8; ++k) {
-    const Vector3 offset = jet.point - target;
-    if (offset.norm() <= 1e-3 * sure) break;
-    const double slope = offset.dot(jet.du);
-    const double curvature = jet.du.squaredNorm() + std::max(0.0, offset.dot(jet.duu));
-    if (!(curvature > 0.0)) break;
-    const double next = std::clamp(u - slope / curvature, domain.first, domain.last);
-    if (std::abs(next - u) <= 1e-12 * domain.length()) break;
-    u = next;
-    jet = evaluate_jet(curve, u);
+/// Distances of points from a curve in space.
+class DistanceFrom {
+ public:
+  explicit DistanceFrom(const NurbsCurve<3>& curve, double sure) : curve_(curve), sure_(sure) {}
+
+  /// By Newton's method from `u`, which moves to the foot; if that ends farther away than `sure`, also from the nearest
+  /// of a few points of the curve.
+  double operator()(const Point3& target, double& u) {
+    const double near = descend(target, u);
+    if (near <= sure_) return near;
+    if (parameters_.empty()) {
+      parameters_ = sample_parameters(curve_.knots());
+      samples_.resize(3, static_cast<Eigen::Index>(parameters_.size()));
+      for (std::size_t i = 0; i < parameters_.size(); ++i)
+        samples_.col(static_cast<Eigen::Index>(i)) = evaluate(curve_, parameters_[i]);
+    }
+    Eigen::Index nearest = 0;
+    (samples_.colwise() - target).colwise().squaredNorm().minCoeff(&nearest);
+    double other = parameters_[static_cast<std::size_t>(nearest)];
+    const double far = descend(target, other);
+    if (far < near) u = other;
+    return std::min(near, far);
   }
-  const double near = (jet.point - target).norm();
-  if (near <= sure) return near;
-  const ClosestCurvePoint<3> closest = closest_point(curve, target);
-  if (closest.distance < near) u = closest.u;
-  return std::min(near, closest.distance);
-}
+
+ private:
+  double descend(const Point3& target, double& u) const {
+    const Interval domain = curve_.domain();
+    CurveJet<3> jet = evaluate_jet(curve_, u);
+    for (int k = 0; k < 12; ++k) {
+      const Vector3 offset = jet.point - target;
+      if (offset.norm() <= 1e-3 * sure_) break;
+      const double curvature = jet.du.squaredNorm() + std::max(0.0, offset.dot(jet.duu));
+      if (!(curvature > 0.0)) break;
+      const double next = std::clamp(u - offset.dot(jet.du) / curvature, domain.first, domain.last);
+      if (std::abs(next - u) <= 1e-12 * domain.length()) break;
+      const CurveJet<3> there = evaluate_jet(curve_, next);
+      if ((there.point - target).norm() > offset.norm()) break;
+      u = next;
+      jet = there;
+    }
+    return (jet.point - target).norm();
+  }
+
+  const NurbsCurve<3>& curve_;
+  double sure_;
+  std::vector<double> parameters_;
+  Points<3> samples_;
+};
 
 }  // namespace
 
@@ -78,17 +104,18 @@ double disagreement(const NurbsCurve<2>& pcurve, const NurbsCurve<3>& model_curv
   // Closed curves may start anywhere.
   const bool are_closed = (start - end).norm() <= 1e-6 * size && (model_start - model_end).norm() <= 1e-6 * size;
   double largest = are_closed ? 0.0 : std::min(same, opposite);
+  DistanceFrom distance(model_curve, 1e-6 * size);
   double u = 0.0;
-  double last_s = -1.0;
+  bool is_first = true;
   for (const double t : sample_parameters(pcurve.knots())) {
     const double s = (t - own.first) / own.length();
     const double expected = is_opposite ? theirs.last - s * theirs.length() : theirs.first + s * theirs.length();
     // From the last foot, or from the same part of the parameter if that is nearer.
     const Point3 target = rectangle.point(evaluate(pcurve, t));
-    if (last_s < 0.0 || (evaluate(model_curve, expected) - target).norm() < (evaluate(model_curve, u) - target).norm())
+    if (is_first || (evaluate(model_curve, expected) - target).norm() < (evaluate(model_curve, u) - target).norm())
       u = expected;
-    last_s = s;
-    largest = std::max(largest, distance_from(model_curve, target, 1e-6 * size, u));
+    is_first = false;
+    largest = std::max(largest, distance(target, u));
   }
   return largest;
 }
@@ -190,9 +217,12 @@ std::vector<LoopCurve> PieceCurves::curves_of(const LoosePiece& piece, int numbe
   std::string objection;
   if (piece.pcurve && !pcurve_is_point) curves = given(piece, name, objection);
   const bool is_given = !curves.empty();
+  // Clipped to a point of the surface's edge.
+  if (piece.pcurve && !pcurve_is_point && !is_given && objection.empty()) return {};
   if (!is_given && piece.model_curve && !model_is_point) {
     InvertedCurve result;
     curves = inverted(*piece.model_curve, result);
+    if (curves.empty() && result.deviation <= options_.largest_deviation) return {};
     if (curves.empty()) {
       if (!objection.empty()) objection = " (" + objection + ")";
       throw GeometryError(

@@ -95,7 +95,7 @@ InvertedPoint PointInverter::refine(const Point3& target, const Point2& guess) c
     const double moved = (found.jet.du * change[0] + found.jet.dv * change[1]).norm();
     if (moved <= 0.25 * noise) break;
     // Newton's error after a step is about its square.
-    const bool is_last = step.is_newton && moved < 3e-9 * size && offset.norm() < 1e-2 * size;
+    const bool is_last = step.is_newton && moved < 3e-9 * size;
     bool is_accepted = false;
     double fraction = 1.0;
     for (int halving = 0; halving < 12 && !is_accepted; ++halving, fraction *= 0.5) {

@@ -447,6 +447,46 @@ TEST(LooseFace, AConeIsKeptTowardsItsApex) {
   EXPECT_NEAR(assembled_area(face_of(side, {base, reversed(circle)})), 3 * expected, 1e-11);
 }
 
+TEST(LooseFace, ATriangleWithoutItsDegenerateSide) {
+  // A bilinear patch with v = 0 drawn to one point.
+  Points<3> points(3, 4);
+  points << 0, 0, 1, 0,  //
+      0, 0, 0, 1,        //
+      0, 0, 0, 0;
+  const NurbsSurface<3> triangle = NurbsSurface<3>::from_points(KnotVector::bezier(1), KnotVector::bezier(1), points);
+  const Point3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
+  const LooseLoop loop{{line3(a, b), line3(b, c), line3(c, a)}};
+  for (const LoopSides sides : {LoopSides::left, LoopSides::outer_first}) {
+    EXPECT_TRUE(is_whole(assemble_face(face_of(triangle, {loop}, sides))));
+    EXPECT_TRUE(is_whole(assemble_face(face_of(triangle, {reversed(loop)}, sides))));
+  }
+  const LooseLoop half{{line3(a, b), line3(b, 0.5 * (b + c)), line3(0.5 * (b + c), a)}};
+  EXPECT_NEAR(assembled_area(face_of(triangle, {half})), 0.25, 1e-13);
+  const LooseLoop other{{line3(a, 0.5 * (b + c)), line3(0.5 * (b + c), c), line3(c, a)}};
+  EXPECT_NEAR(assembled_area(face_of(triangle, {other})), 0.25, 1e-13);
+}
+
+TEST(LooseFace, ASquareTubeWithItsSeamOnACorner) {
+  Points<3> corners(3, 5);
+  corners << 0, 2, 2, 0, 0,  //
+      0, 0, 2, 2, 0,         //
+      0, 0, 0, 0, 0;
+  const NurbsCurve<3> square = polyline<3>(corners);
+  const NurbsSurface<3> side = extrude(square, Vector3(0, 0, 3));
+  const auto at_height = [&](double z) { return transform(square, translation<3>(Vector3(0, 0, z))); };
+  const NurbsCurve<3> seam = line_segment<3>(Point3(0, 0, 1), Point3(0, 0, 2));
+  const LooseLoop with_seam{{model(seam), model(reverse(at_height(2))), model(reverse(seam)), model(at_height(1))}};
+  EXPECT_NEAR(assembled_area(face_of(side, {with_seam})), 8.0, 1e-12);
+  EXPECT_NEAR(assembled_area(face_of(side, {{{model(at_height(1))}}, {{model(reverse(at_height(2)))}}})), 8.0, 1e-12);
+  // A window around the corner of the seam, 1 x 1 on either side of it.
+  const Point3 l0(0, 1, 1), l1(0, 1, 2), r0(1, 0, 1), r1(1, 0, 2), c0(0, 0, 1), c1(0, 0, 2);
+  const LooseLoop window{{line3(l0, c0), line3(c0, r0), line3(r0, r1), line3(r1, c1), line3(c1, l1), line3(l1, l0)}};
+  EXPECT_NEAR(assembled_area(face_of(side, {window})), 2.0, 1e-12);
+  EXPECT_NEAR(
+      assembled_area(face_of(side, {{{model(at_height(0))}}, {{model(reverse(at_height(3)))}}, reversed(window)})),
+      22.0, 1e-12);
+}
+
 // Tori.
 
 NurbsSurface<3> unit_torus() {
