@@ -115,21 +115,21 @@ std::optional<double> CurveFollower::inner_pole() const {
     PassageSearch search(pole, pole_reach_);
     const NurbsCurve<3> rest = restrict_to(curve_, inside);
     for (const BezierSegment& segment : bezier_segments({rest.knots(), rest.homogeneous()}))
-      if (const std::optional<double> t = search.run(segment.coefficients, segment.domain)) return nearest(*t, pole);
+      if (const std::optional<double> t = search.run(segment.coefficients, segment.domain))
+        return nearest(*t, pole, inside);
   }
   return std::nullopt;
 }
 
-double CurveFollower::nearest(double t, const Point3& point) const {
-  const Interval domain = curve_.domain();
+double CurveFollower::nearest(double t, const Point3& point, Interval inside) const {
   for (int k = 0; k < 20; ++k) {
     const CurveJet<3> jet = evaluate_jet(curve_, t);
     const double speed = jet.du.squaredNorm();
     if (!(speed > 0.0)) break;
     const double step = -(jet.point - point).dot(jet.du) / speed;
-    if (!domain.contains(t + step) || std::abs(step) > 1e-3 * domain.length()) break;
+    if (!inside.contains(t + step) || std::abs(step) > 1e-3 * inside.length()) break;
     t += step;
-    if (std::abs(step) <= 1e-15 * domain.length()) break;
+    if (std::abs(step) <= 1e-15 * inside.length()) break;
   }
   return t;
 }

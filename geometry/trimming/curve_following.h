@@ -60,8 +60,8 @@ class CurveFollower {
   FollowedPoint step(const FollowedPoint& from, double t, int depth) const;
   FollowedPoint completed(double t, const Point3& target, const Vector3& derivative, const InvertedPoint& found) const;
   int pole_at(const Point3& target) const;
-  /// The parameter, near t, of the point of the curve nearest to the given one.
-  double nearest(double t, const Point3& point) const;
+  /// The parameter, near t and inside the interval, of the point of the curve nearest to the given one.
+  double nearest(double t, const Point3& point, Interval inside) const;
   void divide(const FollowedPoint& from, const FollowedPoint& to, int depth, std::vector<FollowedPoint>& points) const;
   FollowedPoint crossing(const FollowedPoint& from, const FollowedPoint& to, int d, double value) const;
 

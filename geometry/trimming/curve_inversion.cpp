@@ -62,7 +62,9 @@ class Fit {
  public:
   using Coefficients = Eigen::Matrix<double, 2, fit_degree + 1>;
 
-  Fit(const CurveFollower& follower, const InversionOptions& options) : follower_(follower), options_(options) {}
+  /// `domain` is that of the curve in space.
+  Fit(const CurveFollower& follower, Interval domain, const InversionOptions& options)
+      : follower_(follower), options_(options), shortest_(1e-12 * domain.length()) {}
 
   /// Appends pieces from the first of the followed points to the last, over which curve and surface are smooth.
   void add(std::span<const FollowedPoint> points) {
@@ -110,8 +112,10 @@ class Fit {
 
   void append(const Coefficients& piece, double from, double to) {
     if (breaks_.empty()) breaks_.push_back(from);
-    // Bisected down to neighbouring numbers.
-    if (!(breaks_.back() < to)) return;
+    if (to - breaks_.back() < shortest_) {
+      if (!pieces_.empty()) pieces_.back().col(fit_degree) = piece.col(fit_degree);
+      return;
+    }
     breaks_.push_back(to);
     pieces_.push_back(piece);
   }
@@ -204,6 +208,8 @@ class Fit {
 
   const CurveFollower& follower_;
   const InversionOptions& options_;
+  /// Pieces over less of the parameter are left out: knots must stay apart when the curve is reversed.
+  double shortest_;
   std::vector<double> breaks_;
   std::vector<Coefficients> pieces_;
   /// How many pieces there may be at the end of the present span: against curves that no fit gets near.
@@ -322,7 +328,7 @@ void CurveInverter::append(const NurbsCurve<3>& curve, int depth, InvertedCurve&
     result.curves.push_back(straight(from, to));
     return;
   }
-  Fit fit(follower, options_);
+  Fit fit(follower, curve.domain(), options_);
   for (const std::vector<FollowedPoint>& span : follower.smooth_spans(points)) fit.add(span);
   result.curves.push_back(fit.curve());
   result.misfit = std::max(result.misfit, fit.misfit());

@@ -96,6 +96,55 @@ std::vector<PlanePiece> plane_pieces(const LoopRun& curves) {
   return loop_pieces(loop);
 }
 
+namespace {
+
+/// The integral of B_i^n B_j^(n - 1) n over [0, 1].
+double bernstein_product(int n, int i, int j) {
+  double value = 0.5;
+  for (int k = 1; k <= i; ++k) value *= static_cast<double>(n - i + k) / k;
+  for (int k = 1; k <= j; ++k) value *= static_cast<double>(n - 1 - j + k) / k;
+  for (int k = 1; k <= i + j; ++k) value *= static_cast<double>(k) / (2 * n - 1 - (i + j) + k);
+  return value;
+}
+
+/// Twice the area that the rays from `origin` to the points of a polynomial piece sweep over.
+double swept_area(const PlanePiece& piece, const Point2& origin) {
+  const int n = static_cast<int>(piece.net.cols()) - 1;
+  double sum = 0.0;
+  for (int i = 0; i <= n; ++i) {
+    const Vector2 a = piece.control_point(i) - origin;
+    for (int j = 0; j < n; ++j) {
+      const Vector2 leg = piece.control_point(j + 1) - piece.control_point(j);
+      sum += bernstein_product(n, i, j) * (a.x() * leg.y() - a.y() * leg.x());
+    }
+  }
+  return sum;
+}
+
+/// The same for a rational piece: inscribed polygons, extrapolated to infinitely many corners (Romberg).
+double extrapolated_area(const PlanePiece& piece, const Point2& origin) {
+  constexpr int levels = 5;
+  std::array<double, levels> sums{};
+  for (int level = 0; level < levels; ++level) {
+    const int corners = 4 << level;
+    Vector2 last = piece.start() - origin;
+    double sum = 0.0;
+    for (int k = 1; k <= corners; ++k) {
+      const Vector2 next = evaluate(piece, static_cast<double>(k) / corners) - origin;
+      sum += last.x() * next.y() - last.y() * next.x();
+      last = next;
+    }
+    sums[static_cast<std::size_t>(level)] = sum;
+  }
+  double factor = 4.0;
+  for (std::size_t order = 1; order < levels; ++order, factor *= 4.0)
+    for (std::size_t level = levels - 1; level >= order; --level)
+      sums[level] += (sums[level] - sums[level - 1]) / (factor - 1.0);
+  return sums.back();
+}
+
+}  // namespace
+
 double signed_area(const LoopRun& curves, const ParameterRectangle& rectangle) {
   const std::vector<PlanePiece> pieces = plane_pieces(curves);
   if (pieces.empty()) return 0.0;
@@ -108,7 +157,12 @@ double signed_area(const LoopRun& curves, const ParameterRectangle& rectangle) {
   const Vector2 box = upper - lower;
   const Vector2 whole = rectangle.lengths();
   const double least = 1e-9 * box.prod() + 1e-14 * (box.x() * whole.y() + box.y() * whole.x());
-  const double area = doubled_signed_area(pieces, 0.25 * least).value;
+  const Point2 origin = pieces.front().start();
+  double area = 0.0;
+  for (const PlanePiece& piece : pieces) {
+    const bool is_polynomial = (piece.net.row(2).array() == piece.net(2, 0)).all();
+    area += is_polynomial ? swept_area(piece, origin) : extrapolated_area(piece, origin);
+  }
   return std::abs(area) <= least ? 0.0 : area;
 }
 
