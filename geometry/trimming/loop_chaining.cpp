@@ -101,6 +101,34 @@ class LoopOrder {
   double size_;
 };
 
+/// An order in which given parameter curves follow one another in the parameter plane as they are, no period moved: on
+/// a torus all corners of the rectangle are one point in space, so there the order in space says nothing. Empty if
+/// there is none.
+std::vector<std::size_t> literal_order(const std::vector<LoopCurve>& curves, const ParameterRectangle& rectangle) {
+  std::vector<std::size_t> order;
+  for (const LoopCurve& curve : curves)
+    if (!curve.is_given) return order;
+  const Vector2 near = 4.0 * rectangle.tolerance();
+  const auto follows = [&](std::size_t before, std::size_t after) {
+    const Vector2 gap = start_of(curves[after].curve) - end_of(curves[before].curve);
+    return (gap.cwiseAbs().array() <= near.array()).all();
+  };
+  std::vector<bool> is_taken(curves.size(), false);
+  std::size_t current = 0;
+  while (true) {
+    is_taken[current] = true;
+    order.push_back(current);
+    if (order.size() == curves.size()) break;
+    std::size_t next = (current + 1) % curves.size();
+    for (std::size_t k = 0; k < curves.size() && (is_taken[next] || !follows(current, next)); ++k)
+      next = (next + 1) % curves.size();
+    if (is_taken[next] || !follows(current, next)) return {};
+    current = next;
+  }
+  if (!follows(current, 0)) return {};
+  return order;
+}
+
 enum class JoinKind { joined, bridged, pole, seam, gap };
 
 /// How the end of one curve and the start of the next one are connected.
@@ -286,12 +314,20 @@ std::vector<CoveringLoop> chain_loop(std::vector<LoopCurve> curves, const Parame
                                      const ChainOptions& options, FaceRepairs& repairs) {
   std::vector<CoveringLoop> loops;
   if (curves.empty()) return loops;
-  LoopOrder order(std::move(curves), rectangle, options.size);
-  std::vector<LoopCurve> ordered = order.ordered();
-  if (order.is_reordered) repairs.notes.push_back(fmt::format("{}: its pieces were out of order", options.name));
-  if (order.reversed_pieces > 0)
-    repairs.notes.push_back(
-        fmt::format("{}: {} of its pieces ran against the others", options.name, order.reversed_pieces));
+  std::vector<LoopCurve> ordered;
+  bool is_reordered = false;
+  if (const std::vector<std::size_t> literal = literal_order(curves, rectangle); !literal.empty()) {
+    for (const std::size_t index : literal) ordered.push_back(std::move(curves[index]));
+    is_reordered = !std::is_sorted(literal.begin(), literal.end());
+  } else {
+    LoopOrder order(std::move(curves), rectangle, options.size);
+    ordered = order.ordered();
+    is_reordered = order.is_reordered;
+    if (order.reversed_pieces > 0)
+      repairs.notes.push_back(
+          fmt::format("{}: {} of its pieces ran against the others", options.name, order.reversed_pieces));
+  }
+  if (is_reordered) repairs.notes.push_back(fmt::format("{}: its pieces were out of order", options.name));
   Chainer(rectangle, options, repairs).chain(std::move(ordered), loops);
   if (loops.size() > 1)
     repairs.notes.push_back(fmt::format("{}: it holds {} closed loops", options.name, loops.size()));

@@ -508,6 +508,22 @@ TEST(LooseFace, TheSeamsOfATorusGiveTheWholeTorus) {
   EXPECT_TRUE(is_whole(assemble_face(face_of(unit_torus(), {loop}, LoopSides::outer_first))));
 }
 
+TEST(LooseFace, TheSidesOfATorusMayComeInTheWrongOrder) {
+  // All four corners are one point in space, so only the parameters tell; bits tell the sides apart.
+  const double end = 1 - 1e-10;
+  const LooseLoop loop{
+      {line2({end, 0}, {end, 1}), line2({0, 0}, {end, 0}), line2({0, 1}, {0, 0}), line2({end, 1}, {0, 1})}};
+  const AssembledFace face = assemble_face(face_of(unit_torus(), {loop}, LoopSides::outer_first));
+  const TrimmedSurface& trimmed = std::get<TrimmedSurface>(face.shape);
+  ASSERT_EQ(trimmed.loops().at(0).curves.size(), 4u);
+  for (const LoosePiece& piece : loop.pieces)
+    EXPECT_EQ(std::count_if(trimmed.loops()[0].curves.begin(), trimmed.loops()[0].curves.end(),
+                            [&](const NurbsCurve<2>& c) { return c.homogeneous() == piece.pcurve->homogeneous(); }),
+              1);
+  EXPECT_EQ(face.repairs.shifted_curves, 0);
+  EXPECT_EQ(face.repairs.reversed_loops, 0);
+}
+
 TEST(LooseFace, BandsOfATorus) {
   // The upper half, bounded by the outer and the inner equator; and the outer and the inner half.
   const LooseLoop outer{{model(circle_at(0.0, 1.5, 0.3))}};
