@@ -26,7 +26,7 @@ using geometry::Points;
 namespace {
 
 constexpr int curve_degree = 12;
-constexpr int surface_degree = 6;
+constexpr int surface_degree = 8;
 
 /// Interpolation on [0, 1] at the Chebyshev-Lobatto points, in the Bernstein basis.
 template <int Degree>

@@ -40,7 +40,7 @@ struct FittedSurface {
   double deviation = 0.0;
 };
 
-/// The same for surfaces, of degree 6 in both directions: whole rows or columns of patches are halved.
+/// The same for surfaces, of degree 8 in both directions: whole rows or columns of patches are halved.
 FittedSurface fit_surface(const std::function<geometry::Point3(const geometry::Point2&)>& function,
                           std::span<const double> breakpoints_u, std::span<const double> breakpoints_v,
                           const FitOptions& options);

@@ -145,7 +145,7 @@ MappedPcurve fitted(const NurbsCurve<2>& pcurve, const Direction& u, const Direc
                                    std::abs(v.range.first) * v.scale() / v.domain_length);
   const std::vector<double> breakpoints = split_parameters(pcurve, u, v);
   const FittedCurve<2> fit =
-      fit_curve<2>(scaled, breakpoints, {.tolerance = std::max(pcurve_tolerance, rounding), .largest_count = 256});
+      fit_curve<2>(scaled, breakpoints, {.tolerance = std::max(pcurve_tolerance, rounding), .largest_count = 64});
   AffineMap<2> back;
   back.linear = lengths.asDiagonal();
   back.translation = origin;

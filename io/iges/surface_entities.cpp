@@ -191,7 +191,7 @@ AnySurface EntityReader::read_offset_surface(const Entity& entity) {
   const ParametrisedSurface& carrier = std::get<ParametrisedSurface>(base);
   const Eigen::Index spans = static_cast<Eigen::Index>(carrier.surface.knots_u().breakpoints().size()) *
                              static_cast<Eigen::Index>(carrier.surface.knots_v().breakpoints().size());
-  charge(entity, static_cast<std::size_t>(spans) * 64 * 49 * 4);
+  charge(entity, static_cast<std::size_t>(spans) * 64 * 81 * 4);
   const double size = extent(carrier.surface.control_points()) + std::abs(distance);
   ParametrisedSurface result = offset_surface(carrier, distance, tolerance_for(size));
   approximation(entity, "offset surface", result.tolerance, result.deviation);

@@ -11,6 +11,7 @@
 
 #include "geometry/errors.h"
 #include "geometry/shapes/sweeps.h"
+#include "io/iges/arc_length_curve.h"
 #include "io/iges/fitting.h"
 
 namespace isorim::io::iges {
@@ -57,36 +58,6 @@ double largest_difference(const ParameterMap& first, const ParameterMap& second)
     largest = std::max(largest, std::abs(relative(first, t) - relative(second, t)));
   }
   return largest;
-}
-
-/// The curve as a spline in its relative arc length.
-ParametrisedCurve by_length(const ParametrisedCurve& curve, double tolerance) {
-  const bool is_line =
-      curve.curve.degree() == 1 && curve.curve.homogeneous().cols() == 2 && curve.curve.is_polynomial();
-  const double total = arc_length(curve.curve, curve.curve.domain()).value;
-  if (is_line || total == 0.0) return curve;
-  std::vector<double> breakpoints{0.0};
-  const std::vector<double> knots = curve.curve.knots().breakpoints();
-  for (std::size_t i = 1; i + 1 < knots.size(); ++i)
-    breakpoints.push_back(arc_length(curve.curve, {curve.curve.domain().first, knots[i]}).value / total);
-  breakpoints.push_back(1.0);
-  const FittedCurve<3> fit = fit_curve<3>(
-      [&](double s) -> Point3 { return evaluate(curve.curve, parameter_at_length(curve.curve, s * total)); },
-      breakpoints, {.tolerance = tolerance, .largest_count = 64});
-  return {fit.curve, {}, std::max(fit.deviation, curve.deviation), tolerance};
-}
-
-/// A circle's angle is its relative arc length.
-bool is_circular_arc(const ParametrisedCurve& curve) {
-  if (curve.parameters.is_identity() || curve.parameters.pieces().front().half_rate == 0.0) return false;
-  const Interval range = parameter_range(curve);
-  const Interval domain = curve.curve.domain();
-  const double total = arc_length(curve.curve, domain).value;
-  for (const double part : {0.21, 0.4, 0.77}) {
-    const double u = curve.parameters(range.first + part * range.length());
-    if (std::abs(arc_length(curve.curve, {domain.first, u}).value - part * total) > 1e-13 * total) return false;
-  }
-  return true;
 }
 
 }  // namespace
@@ -161,10 +132,7 @@ ParametrisedSurface ruled_surface(const ParametrisedCurve& first, const Parametr
 }
 
 ParametrisedSurface ruled_by_length(const ParametrisedCurve& first, const ParametrisedCurve& second, double tolerance) {
-  const auto rail = [&](const ParametrisedCurve& curve) {
-    return is_circular_arc(curve) ? curve : by_length(curve, tolerance);
-  };
-  return ruled_surface(rail(first), rail(second), tolerance);
+  return ruled_surface(by_relative_length(first, tolerance), by_relative_length(second, tolerance), tolerance);
 }
 
 ParametrisedSurface b_spline_surface(const BSplineSurfaceData& data, Remark& remark) {
