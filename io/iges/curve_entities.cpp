@@ -237,7 +237,7 @@ ParametrisedCurve EntityReader::read_offset_curve(const Entity& entity) {
     data.distance = [&](double t) { return evaluate_at(*profile, place(t))(coordinate - 1); };
   }
   const Points<3> points = base.curve.control_points();
-  charge(entity, static_cast<std::size_t>(points.cols()) * 1024);
+  charge(entity, static_cast<std::size_t>(points.cols()) * 4096);
   const double tolerance = tolerance_for(extent(points) + std::abs(first));
   ParametrisedCurve result = offset_curve(base, data, tolerance);
   approximation(entity, "offset curve", result.tolerance, result.deviation);

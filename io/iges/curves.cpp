@@ -270,7 +270,7 @@ ParametrisedCurve offset_curve(const ParametrisedCurve& base, const OffsetCurveD
     if (!(speed > 0.0)) throw GeometryError(fmt::format("offset curve: no tangent at parameter {}", t));
     return jet.point + data.distance(t) * normal.cross(jet.du / speed);
   };
-  const FittedCurve<3> fitted = fit_curve<3>(point, breakpoints, {.tolerance = tolerance});
+  const FittedCurve<3> fitted = fit_curve<3>(point, breakpoints, {.tolerance = tolerance, .largest_count = 64});
   return {fitted.curve, {}, std::max(fitted.deviation, base.deviation), tolerance};
 }
 
@@ -284,7 +284,7 @@ ParametrisedCurve in_own_parameter(const ParametrisedCurve& curve, Interval rang
   const ParameterMap map = curve.parameters.over(range);
   std::vector<double> breakpoints = parameter_breakpoints({curve.curve, map});
   const FittedCurve<3> fitted = fit_curve<3>([&](double t) -> Point3 { return evaluate(curve.curve, map(t)); },
-                                             breakpoints, {.tolerance = tolerance});
+                                             breakpoints, {.tolerance = tolerance, .largest_count = 64});
   return {fitted.curve, {}, std::max(fitted.deviation, curve.deviation), tolerance};
 }
 

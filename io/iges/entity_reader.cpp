@@ -20,6 +20,10 @@ namespace {
 /// Composite curves in composite curves, placements of placements: no program nests deeper by intent.
 constexpr std::size_t deepest_nesting = 100;
 
+/// What the smallest entity takes, in numbers.
+constexpr std::size_t entity_overhead = 32;
+constexpr std::size_t least_largest_size = 10'000'000;
+
 /// The colours that have a number of their own, from 1 on.
 constexpr std::array<Colour, 8> numbered_colours{{{0.0, 0.0, 0.0},
                                                   {1.0, 0.0, 0.0},
@@ -46,12 +50,20 @@ EntityReader::Visit::~Visit() {
   reader_.active_.erase(sequence_);
 }
 
+EntityReader::EntityReader(const File& file, const IgesOptions& options)
+    : file_(file), options_(options), largest_size_(options.largest_size) {
+  if (largest_size_ > 0) return;
+  std::size_t numbers = 0;
+  for (const Entity& entity : file.entities) numbers += entity.tokens.size() + entity_overhead;
+  largest_size_ = std::max(least_largest_size, 50 * numbers);
+}
+
 void EntityReader::charge(const Entity& entity, std::size_t numbers) {
-  charged_ += numbers;
-  if (charged_ > options_.largest_size)
+  charged_ += numbers + entity_overhead;
+  if (charged_ > largest_size_)
     refuse(entity, fmt::format("up to here the entities, written out as often as they are used, amount to more than {} "
                                "numbers",
-                               options_.largest_size));
+                               largest_size_));
 }
 
 void EntityReader::remark(const std::string& kind, const Entity& entity) {

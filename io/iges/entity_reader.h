@@ -33,7 +33,7 @@ using AnySurface = std::variant<ParametrisedSurface, AnalyticSurface>;
 class EntityReader {
  public:
   /// The file must outlive the reader.
-  EntityReader(const File& file, const IgesOptions& options) : file_(file), options_(options) {}
+  EntityReader(const File& file, const IgesOptions& options);
 
   const File& file() const { return file_; }
   const IgesOptions& options() const { return options_; }
@@ -72,7 +72,7 @@ class EntityReader {
     int sequence_;
   };
 
-  /// Counts numbers that are about to be made.
+  /// Counts numbers that are about to be made, and what an entity takes besides.
   void charge(const Entity& entity, std::size_t numbers);
 
   /// A flaw that does no harm, told once for all entities that have it: "PROP3 contradicts the weights".
@@ -126,6 +126,7 @@ class EntityReader {
   const IgesOptions& options_;
   std::set<int> active_;
   std::size_t charged_ = 0;
+  std::size_t largest_size_ = 0;
   struct Occurrences {
     int count = 0;
     std::string first;

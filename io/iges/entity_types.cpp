@@ -229,6 +229,14 @@ void add_parts(Parts& parts, Parameters& p, int type) {
     case 308:
       p.skip(2);
       return add_list(parts, p);
+    case 402: {
+      // One parent and its children.
+      p.skip();
+      const int count = p.count();
+      p.skip();
+      for (int i = 0; i < count; ++i) add(parts, p);
+      return;
+    }
     case 504:
       return add_edges(parts, p);
     case 508:
@@ -273,7 +281,7 @@ std::string_view description_of(int type) {
 
 std::vector<int> parts_of(const File& file, const Entity& entity) {
   Parts parts;
-  if (!entity.complaint.empty()) return parts;
+  if (!entity.complaint.empty() || (entity.type == 402 && entity.form != 9)) return parts;
   try {
     Parameters p(file, entity);
     add_parts(parts, p, entity.type);

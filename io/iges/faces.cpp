@@ -71,7 +71,7 @@ CadFace FaceReader::face(const Entity& entity) {
       case 510:
         return topological_face(entity);
       default:
-        return entity.type == 108 && entity.form != 0 ? bounded_plane(entity) : whole_surface(entity);
+        return entity.type == 108 && entity.form != 0 ? plane_with_holes(entity, {}) : whole_surface(entity);
     }
   }();
   // Surfaces have been placed with the rest of their geometry.
@@ -172,22 +172,26 @@ CadFace FaceReader::bounded_surface(const Entity& entity) {
   return result;
 }
 
-CadFace FaceReader::bounded_plane(const Entity& entity) {
-  RawFace face{.surface = reader_.surface(entity),
-               .loops = {},
+RawLoop FaceReader::plane_boundary(const Entity& plane) {
+  Parameters p(reader_.file(), plane);
+  p.skip(4);
+  const AffineMap<3> map = reader_.placement(plane);
+  RawLoop loop;
+  for (const NurbsCurve<3>& piece : model_curves(p.target()))
+    loop.push_back({.pcurve = std::nullopt, .model_curve = transform(piece, map)});
+  return loop;
+}
+
+CadFace FaceReader::plane_with_holes(const Entity& plane, const std::vector<const Entity*>& holes) {
+  RawFace face{.surface = reader_.surface(plane),
+               .loops = {plane_boundary(plane)},
                .directions = PieceDirections::from_ends,
                .sides = LoopSides::outer_first,
                .natural_outer_boundary = false};
-  Parameters p(reader_.file(), entity);
-  p.skip(4);
-  const Entity& bound = p.target();
-  p.skip(std::min(4, p.remaining()));
-  const AffineMap<3> map = reader_.placement(entity);
-  RawLoop loop;
-  for (const NurbsCurve<3>& piece : model_curves(bound))
-    loop.push_back({.pcurve = std::nullopt, .model_curve = transform(piece, map)});
-  face.loops.push_back(std::move(loop));
-  return {.face = build_face(std::move(face), entity, reader_), .origin = origin(entity, p)};
+  for (const Entity* hole : holes) face.loops.push_back(plane_boundary(*hole));
+  Parameters p(reader_.file(), plane);
+  p.skip(std::min(9, p.remaining()));
+  return {.face = build_face(std::move(face), plane, reader_), .origin = origin(plane, p)};
 }
 
 CadFace FaceReader::whole_surface(const Entity& entity) {

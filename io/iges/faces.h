@@ -17,6 +17,8 @@ class FaceReader {
 
   /// 144, 143, 510, a bounded 108, or a surface that is a face as a whole; placed by its own transformation.
   CadFace face(const Entity& entity);
+  /// A 108 form 1 without the 108s of form -1 that a single parent associativity (402 form 9) gives it as holes.
+  CadFace plane_with_holes(const Entity& plane, const std::vector<const Entity*>& holes);
   /// From now on the same edge counts as another one.
   void forget_edges() { edges_.clear(); }
   /// The faces of a 514.
@@ -28,7 +30,7 @@ class FaceReader {
   CadFace trimmed_surface(const Entity& entity);
   CadFace bounded_surface(const Entity& entity);
   CadFace topological_face(const Entity& entity);
-  CadFace bounded_plane(const Entity& entity);
+  RawLoop plane_boundary(const Entity& plane);
   CadFace whole_surface(const Entity& entity);
   RawLoop curve_on_surface(const Entity& entity, const Entity& surface);
   RawLoop boundary(const Entity& entity);

@@ -48,6 +48,7 @@ class Reading {
  private:
   void describe();
   void find_parts();
+  void find_holes(const Entity& entity);
   bool stands_for_itself(const Entity& entity);
   void attempt(const Entity& entity, const AffineMap<3>& map);
   void add(const Entity& entity, const AffineMap<3>& map);
@@ -67,6 +68,8 @@ class Reading {
   CadModel model_;
   /// D numbers of what others are made of.
   std::set<int> parts_;
+  /// Of bounded planes, by the D number of the plane.
+  std::map<int, std::vector<const Entity*>> holes_;
   int solids_ = 0;
   std::vector<std::string> bad_;
 };
@@ -96,6 +99,7 @@ void Reading::find_parts() {
     ++count.count;
     if (iges::role_of(entity) == Role::unknown) ++count.unsupported;
     for (const int part : iges::parts_of(file_, entity)) parts_.insert(part);
+    if (entity.type == 402 && entity.form == 9) find_holes(entity);
   }
   for (auto& [type, count] : counts) {
     count.type = std::to_string(type);
@@ -105,6 +109,22 @@ void Reading::find_parts() {
       model_.warnings.push_back(
           fmt::format("{} entities of type {} ({}) are not read", count.unsupported, type, count.description));
     model_.entities.push_back(std::move(count));
+  }
+}
+
+void Reading::find_holes(const Entity& entity) {
+  if (!entity.complaint.empty()) return;
+  try {
+    iges::Parameters p(file_, entity);
+    p.skip();
+    const int count = p.count();
+    const Entity& parent = p.target();
+    for (int i = 0; i < count; ++i) {
+      const Entity& child = p.target();
+      if (parent.type == 108 && child.type == 108 && child.form != 0) holes_[parent.sequence].push_back(&child);
+    }
+  } catch (const InputError& error) {
+    bad_.emplace_back(error.what());
   }
 }
 
@@ -201,8 +221,13 @@ void Reading::add_surface(const Entity& entity, const AffineMap<3>& map) {
     reader_.remark("is a surface without ends that no face uses; it is left out", entity);
     return;
   }
+  if (entity.type == 108 && entity.form == -1) {
+    reader_.remark("is a hole of no plane; it is left out", entity);
+    return;
+  }
+  const auto holes = holes_.find(entity.sequence);
   std::vector<CadFace> one;
-  one.push_back(faces_.face(entity));
+  one.push_back(holes == holes_.end() ? faces_.face(entity) : faces_.plane_with_holes(entity, holes->second));
   add_faces(std::move(one), map, -1);
 }
 

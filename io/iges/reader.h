@@ -18,9 +18,9 @@ struct IgesOptions {
   bool skip_bad_entities = false;
   /// How far what has no rational form may lie from its approximation, relative to the size of the entity.
   double tolerance = 1e-11;
-  /// How many numbers the entities may amount to when all uses of subfigures are written out. Against files that would
-  /// grow without bound.
-  std::size_t largest_size = 50'000'000;
+  /// How many numbers the entities may amount to when all their uses are written out (those of subfigures above all):
+  /// against files that would grow without bound. 0: 10 million, or 50 times what the file holds if that is more.
+  std::size_t largest_size = 0;
 };
 
 /// The faces and curves of an IGES file, placed but not healed: B-splines arrive as written (knots and weights bit for

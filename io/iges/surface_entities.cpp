@@ -100,7 +100,7 @@ AnySurface EntityReader::read_ruled_surface(const Entity& entity) {
   if (p.integer(0) == 1) second = reverse(second);
   const double size = extent(first.curve.control_points()) + extent(second.curve.control_points());
   charge(entity,
-         1024u * static_cast<std::size_t>(first.curve.homogeneous().cols() + second.curve.homogeneous().cols()));
+         4096u * static_cast<std::size_t>(first.curve.homogeneous().cols() + second.curve.homogeneous().cols()));
   const double tolerance = tolerance_for(size);
   ParametrisedSurface result =
       entity.form == 0 ? ruled_by_length(first, second, tolerance) : ruled_surface(first, second, tolerance);
@@ -191,7 +191,7 @@ AnySurface EntityReader::read_offset_surface(const Entity& entity) {
   const ParametrisedSurface& carrier = std::get<ParametrisedSurface>(base);
   const Eigen::Index spans = static_cast<Eigen::Index>(carrier.surface.knots_u().breakpoints().size()) *
                              static_cast<Eigen::Index>(carrier.surface.knots_v().breakpoints().size());
-  charge(entity, static_cast<std::size_t>(spans) * 64 * 81 * 4);
+  charge(entity, static_cast<std::size_t>(spans) * 2048);
   const double size = extent(carrier.surface.control_points()) + std::abs(distance);
   ParametrisedSurface result = offset_surface(carrier, distance, tolerance_for(size));
   approximation(entity, "offset surface", result.tolerance, result.deviation);

@@ -464,6 +464,19 @@ TEST(IgesReader, BoundedPlanesAreFaces) {
   EXPECT_THAT(model.warnings, ElementsAre(AllOf(HasSubstr("108 at D5"), HasSubstr("without ends"))));
 }
 
+TEST(IgesReader, BoundedPlanesHaveTheHolesOfTheirChildren) {
+  const CadModel model =
+      read({entity(108, "0.,0.,1.,0.,3,0.,0.,0.,0.", {.form = 1}),
+            entity(106, "1,5,0.,0.,0.,4.,0.,4.,4.,0.,4.,0.,0.", {.form = 63, .status = "00010000"}),
+            entity(108, "0.,0.,1.,0.,7,0.,0.,0.,0.", {.form = -1, .status = "00010000"}),
+            entity(106, "1,5,0.,1.,1.,2.,1.,2.,2.,1.,2.,1.,1.", {.form = 63, .status = "00010000"}),
+            entity(402, "1,1,1,5", {.form = 9}), entity(108, "0.,0.,1.,0.,7,0.,0.,0.,0.", {.form = -1})});
+  ASSERT_EQ(model.faces.size(), 1U);
+  ASSERT_EQ(model.faces[0].face.loops.size(), 2U);
+  EXPECT_EQ(start_of(*model.faces[0].face.loops[1].pieces[0].model_curve), Point3(1.0, 1.0, 0.0));
+  EXPECT_THAT(model.warnings, ElementsAre(AllOf(HasSubstr("108 at D11"), HasSubstr("hole of no plane"))));
+}
+
 TEST(IgesReader, SubfiguresAreScaledTurnedAndMoved) {
   // The inner figure holds a line; the outer one an instance of it at twice the size.
   const CadModel model =
