@@ -65,7 +65,8 @@ void require_closed(const OrientedBoundary<Dim>& oriented) {
     const auto [other, distance] = nearest(edges, i);
     if (other < 0) continue;
     text += fmt::format(", a gap of {:.3g} to '{}' (tolerance {:.3g})", distance,
-                        patch(edges[static_cast<std::size_t>(other)]).name, oriented.topology.tolerance);
+                        patch(edges[static_cast<std::size_t>(other)]).name,
+                        std::max(oriented.topology.tolerance, oriented.topology.largest_tolerance));
   }
   if (edges.size() > most) text += fmt::format("; and {} more", edges.size() - most);
   throw GeometryError(text);

@@ -203,7 +203,7 @@ class Matcher {
   }
 
   /// How far a level may move things whose smallest extent is `scale`.
-  double bounded(double tolerance, double scale) const { return std::max(finest_, std::min(tolerance, 0.1 * scale)); }
+  double bounded(double tolerance, double scale) const { return std::max(finest_, std::min(tolerance, 0.25 * scale)); }
 
   // --- One level --------------------------------------------------------------------------------------------------
 
@@ -514,7 +514,7 @@ class Matcher {
   void resolve_fans() {
     std::vector<std::vector<int>> fans;
     for (Group& group : coincident_groups()) {
-      if (group.pieces.size() > 2) fans.push_back(std::move(group.pieces));
+      if (group.pieces.size() > 2 && !is_sliver(group.pieces)) fans.push_back(std::move(group.pieces));
     }
     while (!fans.empty()) {
       const SignedComponents components = patch_components();
@@ -528,6 +528,14 @@ class Matcher {
       if (touching == fans.end()) refuse(fans.front());
       fans.erase(touching);
     }
+  }
+
+  /// Ends of longer edges that gaps keep apart from their vertices, no edge of its own: coarser levels drop them.
+  bool is_sliver(const std::vector<int>& fan) const {
+    return std::ranges::any_of(fan, [&](int index) {
+      const Piece& piece = pieces_[slot(index)];
+      return !piece.whole && piece.data.length <= 16.0 * tolerance_;
+    });
   }
 
   /// Patches joined so far.

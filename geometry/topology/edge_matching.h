@@ -67,10 +67,10 @@ struct MatchingOptions {
 /// The distance grows in levels, from a thousandth of `tolerance` (or rounding) up to it and on to `largest_gap`; each
 /// level looks at what the finer ones left free. So features smaller than the tolerance stay apart where the data are
 /// better than it. Two pieces are joined at the first level at which each is the other's only partner. Beyond rounding
-/// no vertex moves, and nothing is joined, by more than a tenth of the length of an edge that ends there (a fiftieth of
-/// its loop's length for edges shorter than that, which are often the bridges of a gap in a loop); a piece is joined
-/// within a quarter of its own length. What is left between vertices that have become one, bridges and the slivers
-/// beside T-junctions, disappears.
+/// no vertex moves by more than a quarter of the length of an edge that ends there (of a fiftieth of its loop's length
+/// for edges shorter than that, which are often the bridges of a gap in a loop); a piece is joined within a quarter of
+/// its own length. What is left between vertices that have become one, bridges and the slivers beside T-junctions,
+/// disappears.
 ///
 /// An even number of pieces that coincide within `tolerance`, where solids touch, is resolved by the shells to which
 /// the patches belong by their other edges; pairs have to lie side by side about the edge. Throws GeometryError if they

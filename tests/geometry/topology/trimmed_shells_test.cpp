@@ -80,6 +80,33 @@ OrientedBoundary<3> expect_solid(const Boundary<3>& boundary, double volume, dou
   return oriented;
 }
 
+/// The unit sphere without its part inside x^2 + y^2 < 0.36: a band between two parallels, trimmed by lines, and a
+/// cylinder. Volume 4 pi / 3 0.8^3.
+Boundary<3> napkin_ring() {
+  const NurbsSurface<3> ball = surface_of(sphere(1.0).patches[0].shape);
+  const Interval u = ball.knots_u().domain();
+  const Interval v = ball.knots_v().domain();
+  const auto parallel = [&](double z) {
+    double low = v.first;
+    double high = v.last;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (evaluate(ball, Point2(0.3, middle)).z() < z ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  };
+  const double below = parallel(-0.8);
+  const double above = parallel(0.8);
+  const TrimLoop band =
+      polygon({Point2(u.first, below), Point2(u.last, below), Point2(u.last, above), Point2(u.first, above)});
+  Boundary<3> ring{{{"band", TrimmedSurface(ball, {band})}}};
+  for (const Patch<3>& patch : transform(cylinder(0.6, 1.6), translation<3>(Vector3(0, 0, -0.8))).patches) {
+    const SurfaceJet<3> jet = evaluate_jet(surface_of(patch.shape), Point2(0.4, 0.4));
+    if (std::abs(jet.du.cross(jet.dv).normalized().z()) < 0.5) ring.patches.push_back(patch);
+  }
+  return ring;
+}
+
 TEST(OrientTrimmedShells, TurnsABoxWithAHoleRight) {
   std::mt19937 random(21);
   for (int trial = 0; trial < 30; ++trial) {
@@ -127,6 +154,15 @@ TEST(OrientTrimmedShells, ClosesGapsLocally) {
       EXPECT_LE(oriented.topology.largest_gap, 2.0 * distance);
       EXPECT_GE(oriented.topology.largest_gap, 0.2 * distance);
     }
+  }
+}
+
+TEST(OrientTrimmedShells, GapsNearTheToleranceLeaveSliversThatMeet) {
+  std::mt19937 random(44);
+  const double volume = 4.0 / 3.0 * pi * 0.512;
+  for (int trial = 0; trial < 40; ++trial) {
+    const double distance = std::pow(10.0, -6.5 + 0.05 * trial);
+    expect_solid(shaken(as_from_a_file(napkin_ring(), random), distance, random), volume, 20.0 * distance, for_files());
   }
 }
 
@@ -193,33 +229,6 @@ TEST(OrientTrimmedShells, TJunctionsOnTrimmedEdges) {
   }
   for (int trial = 0; trial < 5; ++trial) expect_solid(as_from_a_file(pieces, random), holed_box_volume);
   expect_solid(shaken(as_from_a_file(pieces, random), 3e-4, random), holed_box_volume, 1e-3, for_files());
-}
-
-/// The unit sphere without its part inside x^2 + y^2 < 0.36: a band between two parallels, trimmed by lines, and a
-/// cylinder. Volume 4 pi / 3 0.8^3.
-Boundary<3> napkin_ring() {
-  const NurbsSurface<3> ball = surface_of(sphere(1.0).patches[0].shape);
-  const Interval u = ball.knots_u().domain();
-  const Interval v = ball.knots_v().domain();
-  const auto parallel = [&](double z) {
-    double low = v.first;
-    double high = v.last;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (low + high);
-      (evaluate(ball, Point2(0.3, middle)).z() < z ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
-  };
-  const double below = parallel(-0.8);
-  const double above = parallel(0.8);
-  const TrimLoop band =
-      polygon({Point2(u.first, below), Point2(u.last, below), Point2(u.last, above), Point2(u.first, above)});
-  Boundary<3> ring{{{"band", TrimmedSurface(ball, {band})}}};
-  for (const Patch<3>& patch : transform(cylinder(0.6, 1.6), translation<3>(Vector3(0, 0, -0.8))).patches) {
-    const SurfaceJet<3> jet = evaluate_jet(surface_of(patch.shape), Point2(0.4, 0.4));
-    if (std::abs(jet.du.cross(jet.dv).normalized().z()) < 0.5) ring.patches.push_back(patch);
-  }
-  return ring;
 }
 
 TEST(OrientTrimmedShells, SeamsMeetThemselves) {
