@@ -5,6 +5,9 @@
 #include <cstddef>
 #include <limits>
 
+#include <fmt/format.h>
+
+#include "geometry/errors.h"
 #include "geometry/intersection/plane_pieces.h"
 #include "geometry/trimming/lifted_curve.h"
 #include "geometry/trimming/loop_pieces.h"
@@ -71,7 +74,10 @@ std::vector<FaceLoops> connected_faces(const std::vector<TrimLoop>& loops) {
       smallest = outer.doubled_area;
       owner = &face;
     }
-    if (owner != nullptr) owner->holes.push_back(hole.loop);
+    if (owner == nullptr) {
+      throw GeometryError(fmt::format("loop {} runs clockwise, but no counter-clockwise loop holds it", hole.loop + 1));
+    }
+    owner->holes.push_back(hole.loop);
   }
   return faces;
 }

@@ -17,6 +17,7 @@ struct FaceLoops {
 };
 
 /// The connected pieces of what the loops keep: each counter-clockwise loop with the clockwise ones directly in it.
+/// Throws GeometryError for a clockwise one that lies in none.
 std::vector<FaceLoops> connected_faces(const std::vector<geometry::TrimLoop>& loops);
 
 /// The entities that faces, loose or in solids, are made of.
