@@ -21,8 +21,12 @@ namespace isorim::geometry {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-/// To which curves in the parameters are met, relative to the parameters' range.
-constexpr double fit_accuracy = 4e-15;
+/// To which curves in the parameters are met, relative to the parameters' range: points are known to the rounding of
+/// the solid's size, seen from the tool's axis or centre at the distance `radius`.
+double fit_accuracy(double size, double radius) {
+  return 4e-15 * std::max(1.0, size / radius);
+}
+
 /// Parameters this near to a border lie on it.
 constexpr double border_tolerance = 1e-9;
 
@@ -199,7 +203,8 @@ Frame sphere_frame(const SphereTool& tool, const std::vector<CapEdge>& edges) {
 }
 
 /// The edges on one half, in its parameters.
-std::vector<NurbsCurve<2>> curves_on_half(const Frame& frame, double radius, const std::vector<CapEdge>& edges) {
+std::vector<NurbsCurve<2>> curves_on_half(const Frame& frame, double radius, const std::vector<CapEdge>& edges,
+                                          double size) {
   std::vector<NurbsCurve<2>> curves;
   for (const CapEdge& edge : edges) {
     const SpaceCurve curve = space_curve(edge);
@@ -212,7 +217,7 @@ std::vector<NurbsCurve<2>> curves_on_half(const Frame& frame, double radius, con
         const Vector3 p = frame.local(curve(part.first + s * part.length())) / radius;
         return Point2(p.head<2>() / (1.0 + p.z()));
       };
-      const std::vector<NurbsCurve<2>> pieces = fit_curve(inverse, fit_accuracy);
+      const std::vector<NurbsCurve<2>> pieces = fit_curve(inverse, fit_accuracy(size, radius));
       curves.insert(curves.end(), pieces.begin(), pieces.end());
     }
   }
@@ -281,7 +286,7 @@ double part_of_quarter(double angle) {
   return part > 1.0 - 1e-14 ? 1.0 : part;
 }
 
-/// The edges in the parameters of the side, cut where its spans end; heights divided by `unit`.
+/// The edges in the parameters of the side, cut where its spans end.
 std::vector<NurbsCurve<2>> curves_on_side(const RoundSide& side, const std::vector<CapEdge>& edges, double size) {
   std::vector<NurbsCurve<2>> curves;
   for (const CapEdge& edge : edges) {
@@ -295,13 +300,14 @@ std::vector<NurbsCurve<2>> curves_on_side(const RoundSide& side, const std::vect
       const int quarter = static_cast<int>(std::floor((middle < 0.0 ? middle + 2.0 * pi : middle) / (0.5 * pi))) % 4;
       // The first axis of the quarter; angles from it do not wrap round.
       const CosineSine turn = cosine_sine(0.5 * pi * quarter);
+      const double radius = std::hypot(x(part.middle()), y(part.middle())) * size;
       const auto inverse = [&](double s) {
         const Vector3 p = side.frame.local(curve(part.first + s * part.length()));
         const double angle =
             std::atan2(turn.cosine * p.y() - turn.sine * p.x(), turn.cosine * p.x() + turn.sine * p.y());
         return Point2(0.25 * (quarter + part_of_quarter(angle)), p.z() / size);
       };
-      for (NurbsCurve<2>& piece : fit_curve(inverse, fit_accuracy)) {
+      for (NurbsCurve<2>& piece : fit_curve(inverse, fit_accuracy(size, radius))) {
         AffineMap<2> stretch;
         stretch.linear(1, 1) = size;
         curves.push_back(transform(piece, stretch));
@@ -358,7 +364,7 @@ std::vector<Patch<3>> sphere_caps(const SphereTool& tool, const std::vector<CapE
   std::array<Frame, 2> frames{upper, lower};
   bool meets_border = false;
   for (std::size_t half = 0; half < 2; ++half) {
-    std::vector<NurbsCurve<2>> curves = curves_on_half(frames[half], tool.radius, seen);
+    std::vector<NurbsCurve<2>> curves = curves_on_half(frames[half], tool.radius, seen, size);
     meets_border = meets_border || std::any_of(curves.begin(), curves.end(), [&](const NurbsCurve<2>& curve) {
                      return border.position(evaluate(curve, 0.0)).has_value();
                    });

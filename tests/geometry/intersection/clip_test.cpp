@@ -185,6 +185,10 @@ TEST(Clip, Balls) {
   expect_solid(clip(cube(1.0), ball(Point3::Zero(), 0.5, KeptSide::outside)), 1.0 - pi / 48.0, 6.0 - pi / 16.0);
   expect_solid(clip(sphere(1.0), ball(Point3(1, 0, 0), 1.0, KeptSide::inside)), 5.0 * pi / 12.0, 2.0 * pi);
   expect_complementary(cube(1.0), ball(middle, 0.6, KeptSide::inside), ball(middle, 0.6, KeptSide::outside));
+  // Much smaller than the solid, whose size gives the rounding.
+  const Point3 corner(-0.6, 0.0, 0.5);
+  expect_complementary(ellipsoid(Vector3(1.0, 0.5, 0.75)), ball(corner, 0.05, KeptSide::inside),
+                       ball(corner, 0.05, KeptSide::outside));
 }
 
 TEST(Clip, ToriAcross) {
