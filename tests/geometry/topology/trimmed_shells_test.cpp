@@ -1,5 +1,5 @@
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <map>
 #include <numbers>
 #include <random>
@@ -479,9 +479,10 @@ TEST(OrientTrimmedShells, ThreeThousandFacesTakeLessThanTwoSeconds) {
     const Boundary<3> copy = as_from_a_file(transform(holed_box(0.01 * i), translation<3>(place)), random);
     pattern = together(std::move(pattern), copy, fmt::format("_{}", i));
   }
-  const auto start = std::chrono::steady_clock::now();
+  // Of this process: other work on the machine does not count.
+  const std::clock_t start = std::clock();
   const OrientedBoundary<3> oriented = orient(pattern, for_files());
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   EXPECT_TRUE(oriented.topology.closed);
   EXPECT_EQ(oriented.topology.shells.size(), 430U);
   EXPECT_LT(seconds, 2.0);
