@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -127,8 +128,17 @@ bool has_sound_geometry(const Value& root) {
   return geometry && KeyType<GeometryKeys>::read(*geometry, keys, {}, {geometry->place, "geometry"}, complaints);
 }
 
-void build_shape(CaseFile& file, int dim, Complaints& complaints) {
+/// Builds the shape; its dimension is known then, for a file only if it could be read.
+std::optional<int> build_shape(CaseFile& file, const FileShapeOptions& options, Complaints& complaints) {
+  const std::optional<int> dim = dimension(file.keys.geometry);
   try {
+    if (auto* keys = std::get_if<FileKeys>(&file.keys.geometry)) {
+      keys->folder = file.path.parent_path();
+      FileShape read = build_file_shape(*keys, options);
+      file.shape = std::move(read.boundary);
+      file.cad = std::move(read.facts);
+      return std::holds_alternative<BuiltBoundary<2>>(file.shape) ? 2 : 3;
+    }
     if (dim == 2) {
       file.shape = build_boundary<2>(file.keys.geometry);
     } else {
@@ -137,6 +147,16 @@ void build_shape(CaseFile& file, int dim, Complaints& complaints) {
   } catch (const InputError& error) {
     complaints.add(error.what());
   }
+  return dim;
+}
+
+/// The case that a CAD file makes by itself.
+Value case_of_cad_file(const std::filesystem::path& path) {
+  const Place place{std::make_shared<const std::string>(path.string())};
+  const auto text = [&](std::string content) { return Value{std::move(content), place}; };
+  Value geometry{Value::Table{{"type", text("file")}, {"path", text(path.filename().string())}}, place};
+  Value properties{Value::Table{{"tolerance", Value{cad_file_tolerance, place}}}, place};
+  return {Value::Table{{"geometry", std::move(geometry)}, {"properties", std::move(properties)}}, place};
 }
 
 }  // namespace
@@ -147,29 +167,38 @@ std::vector<std::string> property_names(int dim) {
   return {boundary, domain, "centroid", "inertia", "principal_moments", "mass", "closure_defect"};
 }
 
-CaseFile read_case(const Value& root, const std::filesystem::path& path) {
+CaseFile read_case(const Value& root, const std::filesystem::path& path, const FileShapeOptions& options) {
   CaseFile file;
   file.path = path;
   file.resolved = to_toml(root);
   Complaints complaints;
   schema<CaseKeys>().read(root, file.keys, {root.place, ""}, complaints);
   if (has_sound_geometry(root)) {
-    const int dim = dimension(file.keys.geometry);
-    check_integrals(file.keys, dim, complaints);
-    check_integrands(file.keys, dim, complaints);
-    check_expectations(file.keys, dim, complaints);
-    check_convergence(file.keys, dim, complaints);
-    check_poles(file.keys, dim, complaints);
-    build_shape(file, dim, complaints);
+    if (const std::optional<int> dim = build_shape(file, options, complaints)) {
+      check_integrals(file.keys, *dim, complaints);
+      check_integrands(file.keys, *dim, complaints);
+      check_expectations(file.keys, *dim, complaints);
+      check_convergence(file.keys, *dim, complaints);
+      check_poles(file.keys, *dim, complaints);
+    }
   }
   complaints.throw_if_any();
   return file;
 }
 
-CaseFile read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+CaseFile read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides,
+                   const FileShapeOptions& options) {
   Value root = read_toml(path);
   for (const std::string& assignment : overrides) apply_override(root, assignment);
-  return read_case(root, path);
+  return read_case(root, path, options);
+}
+
+CaseFile read_case_or_cad(const std::filesystem::path& path, const std::vector<std::string>& overrides,
+                          const FileShapeOptions& options) {
+  if (!has_cad_extension(path)) return read_case(path, overrides, options);
+  Value root = case_of_cad_file(path);
+  for (const std::string& assignment : overrides) apply_override(root, assignment);
+  return read_case(root, path, options);
 }
 
 }  // namespace isorim::io

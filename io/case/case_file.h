@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "io/case/file_shape.h"
 #include "io/case/schema.h"
 #include "io/case/shape_builder.h"
 #include "io/case/shape_keys.h"
@@ -82,13 +82,13 @@ struct CaseKeys {
   KeyPlace where;
 };
 
-using AnyBoundary = std::variant<BuiltBoundary<2>, BuiltBoundary<3>>;
-
 struct CaseFile {
   std::filesystem::path path;
   CaseKeys keys;
   /// The shape that `keys.geometry` describes.
   AnyBoundary shape;
+  /// If the shape comes from a CAD file.
+  std::optional<CadFacts> cad;
   /// The case with its overrides, as TOML.
   std::string resolved;
 
@@ -101,10 +101,19 @@ struct CaseFile {
 /// Reads a case file, puts the overrides ("path.to.key=value") into it, validates it and builds its shape. Throws
 /// InputError with all complaints at once, one a line, each with file and line, key, what was found and what was
 /// expected. (That loops cross or that a boundary is open shows only later, in build_model().)
-CaseFile read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+CaseFile read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
+                   const FileShapeOptions& options = {});
 
-/// The same for a case that is at hand as a tree of values.
-CaseFile read_case(const Value& root, const std::filesystem::path& path);
+/// The same for a case that is at hand as a tree of values. Relative paths in it begin at the folder of `path`.
+CaseFile read_case(const Value& root, const std::filesystem::path& path, const FileShapeOptions& options = {});
+
+/// Relative error aimed at for a CAD file by itself: below what the edges of nearly every file are worth.
+inline constexpr double cad_file_tolerance = 1e-9;
+
+/// A CAD file (has_cad_extension()) by itself, as the case that has only [geometry] type = "file", its path and
+/// [properties] tolerance = cad_file_tolerance; or a case file. Overrides and errors as for read_case().
+CaseFile read_case_or_cad(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
+                          const FileShapeOptions& options = {});
 
 /// The quantities that [expect] and [convergence] may name besides the integrals, in dimension `dim`.
 std::vector<std::string> property_names(int dim);

@@ -88,16 +88,6 @@ Boundary<Dim> numbered(const std::vector<geometry::PatchShape<Dim>>& shapes, con
   return boundary;
 }
 
-template <int Dim>
-Boundary<Dim> finished(Boundary<Dim> boundary, const ShapeKeys& keys) {
-  if (!keys.transform.items.empty()) {
-    const geometry::AffineMap<Dim> map = affine_map<Dim>(keys.transform);
-    boundary = geometry::transform(boundary, map);
-  }
-  prefix_names(boundary, keys.name);
-  return boundary;
-}
-
 // --- Regions of the plane -------------------------------------------------------------------------------------
 
 /// The curves of a path; unnamed ones are called "curve_1", ...
@@ -440,10 +430,11 @@ struct GeometryBuilder<3> {
 
 }  // namespace
 
-int dimension(const GeometryKeys& geometry) {
+std::optional<int> dimension(const GeometryKeys& geometry) {
   return std::visit(
-      [](const auto& shape) {
+      [](const auto& shape) -> std::optional<int> {
         using Keys = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<Keys, FileKeys>) return std::nullopt;
         if constexpr (std::is_same_v<Keys, NurbsKeys>) return shape.patches.empty() ? 2 : 3;
         const bool plane = std::is_same_v<Keys, CircleKeys> || std::is_same_v<Keys, EllipseKeys> ||
                            std::is_same_v<Keys, EllipseArcKeys> || std::is_same_v<Keys, RectangleKeys> ||
@@ -456,6 +447,19 @@ int dimension(const GeometryKeys& geometry) {
 BuiltBoundary<2> build_region(const RegionKeys& keys) {
   return region_boundary(keys);
 }
+
+template <int Dim>
+Boundary<Dim> finished(Boundary<Dim> boundary, const ShapeKeys& keys) {
+  if (!keys.transform.items.empty()) {
+    const geometry::AffineMap<Dim> map = affine_map<Dim>(keys.transform);
+    boundary = geometry::transform(boundary, map);
+  }
+  prefix_names(boundary, keys.name);
+  return boundary;
+}
+
+template Boundary<2> finished<2>(Boundary<2>, const ShapeKeys&);
+template Boundary<3> finished<3>(Boundary<3>, const ShapeKeys&);
 
 template <int Dim>
 BuiltBoundary<Dim> build_boundary(const GeometryKeys& keys) {

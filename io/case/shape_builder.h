@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "geometry/boundary.h"
@@ -23,13 +25,19 @@ struct BuiltBoundary {
   std::vector<LoopClaim> claims;
 };
 
-/// 2 if the shape is a region of the plane, 3 if it is a solid.
-int dimension(const GeometryKeys& keys);
+using AnyBoundary = std::variant<BuiltBoundary<2>, BuiltBoundary<3>>;
+
+/// 2 if the shape is a region of the plane, 3 if it is a solid; empty for a file, which has to be read to know.
+std::optional<int> dimension(const GeometryKeys& keys);
+
+/// The shape moved by the keys' transform, its patches renamed after the keys' name.
+template <int Dim>
+geometry::Boundary<Dim> finished(geometry::Boundary<Dim> boundary, const ShapeKeys& keys);
 
 /// Builds the exact boundary of a shape of the plane (Dim = 2) or of space (Dim = 3); Dim must be the shape's
-/// dimension(). Throws InputError with all complaints at once, each with file, line and key: knots that contradict
-/// themselves or the points, wrong numbers of coordinates, loops that are open or without area, an axis that cuts a
-/// profile, ...
+/// dimension(). Files are for build_file_shape() (file_shape.h). Throws InputError with all complaints at once, each
+/// with file, line and key: knots that contradict themselves or the points, wrong numbers of coordinates, loops that
+/// are open or without area, an axis that cuts a profile, ...
 template <int Dim>
 BuiltBoundary<Dim> build_boundary(const GeometryKeys& keys);
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "io/cad/units.h"
 #include "io/case/shape_keys.h"
 
 /// The declarations of all shapes. Help and reference print the texts that stand here.
@@ -593,6 +594,33 @@ const Schema<NurbsKeys>& schema<NurbsKeys>() {
   return declared;
 }
 
+template <>
+const Schema<FileKeys>& schema<FileKeys>() {
+  std::vector<std::pair<std::string, std::string>> units;
+  for (const LengthUnit& unit : length_units) units.emplace_back(unit.name, unit.name);
+  static const auto declared = with_common_keys(
+      Schema<FileKeys>("file",
+                       "The boundary in a CAD file: " + cad_formats() +
+                           ". Faces make a solid, turned outward whatever the file says of their sides; a drawing's "
+                           "curves make a region of the plane. isorim check FILE tells what a file holds.")
+          .key("path", &FileKeys::path,
+               {.text = "The file; a relative path begins at the folder of the case file.", .presence = required})
+          .choice("units", &FileKeys::units, units,
+                  {.text = "Unit of all lengths of the case and of its results: the shape is converted into it. That "
+                           "of the file if absent."})
+          .key("dimension", &FileKeys::dimension,
+               {.text = "3: a solid bounded by the faces. 2: a region of the plane, bounded by the curves or, where "
+                        "there are faces, by the edges of these, which must be flat. 3 if absent and the file has "
+                        "faces, else 2.",
+                .range = Range::between(2, 3)})
+          .choice("blanked", &FileKeys::blanked,
+                  {{"skip", BlankedEntities::skip}, {"include", BlankedEntities::include}},
+                  {.text = "What becomes of faces and curves that are switched off in the file."})
+          .key("names", &FileKeys::names, {.text = "Only faces and curves that the file gives these names."})
+          .key("levels", &FileKeys::levels, {.text = "Only faces and curves on these levels (layers)."}));
+  return declared;
+}
+
 #undef ISORIM_DECLARE
 
 // --- The names of the types -----------------------------------------------------------------------------------
@@ -642,8 +670,8 @@ template <>
 const TypeTags& type_tags<GeometryKeys>() {
   static const TypeTags tags{
       {"circle", "ellipse", "ellipse_arc", "rectangle", "polygon", "region", "nurbs", "sphere", "ellipsoid", "torus",
-       "cylinder", "cone", "box", "revolve", "extrude", "ruled", "loft", "patches"},
-      {"file", "fit", "propeller", "hull", "tspline"},
+       "cylinder", "cone", "box", "revolve", "extrude", "ruled", "loft", "patches", "file"},
+      {"fit", "propeller", "hull", "tspline"},
       "",
       "",
       {{"skin", "loft"}}};

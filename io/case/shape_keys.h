@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
@@ -8,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "geometry/intersection/clip.h"
+#include "io/cad/read_cad.h"
 #include "io/case/schema.h"
 
 /// What a case file says of shapes, as it stands there: angles in degrees, lengths in the unit of the shape. The
@@ -271,8 +273,21 @@ struct NurbsKeys : SolidKeys {
   std::vector<NurbsPatchKeys> patches;
 };
 
+/// The boundary that a CAD file holds.
+struct FileKeys : ShapeKeys {
+  std::string path;
+  /// Empty: the file's own.
+  std::string units;
+  std::optional<int> dimension;
+  BlankedEntities blanked = BlankedEntities::skip;
+  std::vector<std::string> names;
+  std::vector<int> levels;
+  /// Where a relative path begins, the folder of the case file; set by its reader.
+  std::filesystem::path folder;
+};
+
 using GeometryKeys = std::variant<CircleKeys, EllipseKeys, EllipseArcKeys, RectangleKeys, PolygonKeys, RegionKeys,
                                   NurbsKeys, SphereKeys, EllipsoidKeys, TorusKeys, CylinderKeys, ConeKeys, BoxKeys,
-                                  RevolveKeys, ExtrudeKeys, RuledKeys, LoftKeys, PatchesKeys>;
+                                  RevolveKeys, ExtrudeKeys, RuledKeys, LoftKeys, PatchesKeys, FileKeys>;
 
 }  // namespace isorim::io

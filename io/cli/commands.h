@@ -15,6 +15,7 @@ namespace isorim::cli {
 enum class Verbosity { normal, quiet };
 
 struct RunArguments {
+  /// A case or a CAD file.
   std::filesystem::path case_file;
   /// out/<case name>/ if absent.
   std::optional<std::filesystem::path> output;
@@ -35,11 +36,20 @@ struct VerifyArguments {
 /// Runs every case with [expect] below a folder and prints one table.
 int verify_cases(const VerifyArguments& arguments, std::ostream& out, std::ostream& err);
 
+enum class CheckFormat { text, json };
+
 struct CheckArguments {
+  /// A case or a CAD file.
   std::filesystem::path case_file;
+  /// For free edges; out/<name>/ if absent.
+  std::optional<std::filesystem::path> output;
   std::vector<std::string> overrides;
+  CheckFormat format = CheckFormat::text;
+  /// 0: all.
+  int threads = 0;
 };
-/// Tells what a case holds without integrating.
+/// Tells what a case or CAD file holds without integrating over it, and writes its free edges if there are any. Open
+/// boundaries are no failure; what makes no boundary at all is (exit status 2).
 int check_case(const CheckArguments& arguments, std::ostream& out, std::ostream& err);
 
 /// How faces go into a CAD file.
@@ -50,17 +60,21 @@ enum class FaceForm {
 };
 
 struct ConvertArguments {
+  /// A case or a CAD file.
   std::filesystem::path input;
   /// Its extension says what it becomes.
   std::filesystem::path output;
   std::vector<std::string> overrides;
   FaceForm faces = FaceForm::solids;
-  /// Unit of the lengths of a case, which says nothing of it; mm if absent.
+  /// Unit of the lengths of a case, which says nothing of it; mm if absent. A CAD file's are converted into it.
   std::optional<std::string> unit;
 };
-/// Writes the boundary of a case in another format: IGES (.igs, .iges), exact cells for ParaView (.vtu), or a drawing
-/// of a region of the plane (.svg).
+/// Writes the boundary of a case or CAD file in another format: IGES (.igs, .iges), exact cells for ParaView (.vtu), or
+/// a drawing of a region of the plane (.svg).
 int convert(const ConvertArguments& arguments, std::ostream& out, std::ostream& err);
+
+/// Makes a folder for results. Throws InputError with its path if it cannot.
+void make_folder(const std::filesystem::path& folder);
 
 /// Prints each line of a message as "isorim: line".
 void print_message(std::ostream& err, std::string_view message);

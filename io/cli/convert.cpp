@@ -5,6 +5,7 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -60,7 +61,7 @@ std::string write_iges(const ConvertArguments& arguments, const io::CaseFile& fi
   io::iges::WriterOptions options;
   options.form = arguments.faces == FaceForm::loose ? io::iges::Form::faces : io::iges::Form::solids;
   options.title = file.title();
-  options.unit = arguments.unit.value_or("mm");
+  options.unit = file.cad ? file.cad->unit : arguments.unit.value_or("mm");
   const io::iges::WriterReport report = std::visit(
       [&](const auto& known) { return io::iges::write_iges(arguments.output, known.oriented, options); }, model);
   return fmt::format("{}, unit {}", report_text(report), options.unit);
@@ -80,12 +81,26 @@ std::string write_vtu(const ConvertArguments& arguments, const io::AnyModel& mod
   return fmt::format("{} elements", io::summarise(model).elements);
 }
 
+/// The case or CAD file; the lengths of the latter are converted into the unit that is asked for.
+io::CaseFile read_input(const ConvertArguments& arguments) {
+  std::vector<std::string> overrides = arguments.overrides;
+  if (arguments.unit && io::has_cad_extension(arguments.input))
+    overrides.push_back("geometry.units=" + *arguments.unit);
+  io::CaseFile file = io::read_case_or_cad(arguments.input, overrides);
+  if (file.cad && arguments.unit && *arguments.unit != file.cad->unit) {
+    throw InputError(
+        fmt::format("{}: its lengths are in {}, and --unit asks for {}; expected [geometry] units = \"{}\"",
+                    arguments.input.string(), file.cad->unit, *arguments.unit, *arguments.unit));
+  }
+  return file;
+}
+
 }  // namespace
 
 int convert(const ConvertArguments& arguments, std::ostream& out, std::ostream& /*err*/) {
   const Format format = format_of(arguments.output);
   require_different_files(arguments);
-  const io::CaseFile file = io::read_case(arguments.input, arguments.overrides);
+  const io::CaseFile file = read_input(arguments);
   const io::AnyModel model = io::build_model(file);
   const std::string content = format == Format::iges  ? write_iges(arguments, file, model)
                               : format == Format::svg ? write_svg(arguments, file, model)

@@ -2,6 +2,7 @@
 #include <exception>
 #include <iostream>
 #include <string>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -17,6 +18,14 @@ double now() {
 }
 
 }  // namespace
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw InputError(fmt::format("{}: cannot make the folder: {}", folder.string(), error.message()));
+  }
+}
 
 void print_message(std::ostream& err, std::string_view message) {
   while (!message.empty()) {

@@ -31,6 +31,7 @@ struct Arguments {
   bool quiet = false;
   VerifyArguments verify;
   CheckArguments check;
+  bool json = false;
   ConvertArguments convert;
   bool loose_faces = false;
   HelpArguments help;
@@ -43,7 +44,7 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
 }
 
 void add_case_options(CLI::App& command, std::filesystem::path& file, std::vector<std::string>& overrides) {
-  command.add_option("CASE", file, "Case file (.toml)")->required();
+  command.add_option("CASE", file, "Case file (.toml) or CAD file")->required();
   add_overrides(command, overrides);
 }
 
@@ -68,18 +69,25 @@ void declare(CLI::App& app, Arguments& arguments) {
   verify.add_option("--json", arguments.verify.json, "Writes the table as JSON")->type_name("FILE");
   add_threads(verify, arguments.verify.threads);
 
-  CLI::App& check = *app.add_subcommand("check", "Tells what is in a case, closed or not, without integrating");
+  CLI::App& check =
+      *app.add_subcommand("check", "Tells what is in a case or CAD file, closed or not, without integrating");
   add_case_options(check, arguments.check.case_file, arguments.check.overrides);
+  check.add_option("-o,--output", arguments.check.output, "Folder for free edges; out/<name> if absent")
+      ->type_name("DIR");
+  check.add_flag("--json", arguments.json, "Prints everything as JSON");
+  add_threads(check, arguments.check.threads);
 
-  CLI::App& convert = *app.add_subcommand("convert", "Writes the boundary of a case in another format");
-  convert.add_option("IN", arguments.convert.input, "Case file (.toml)")->required();
+  CLI::App& convert = *app.add_subcommand("convert", "Writes the boundary of a case or CAD file in another format");
+  convert.add_option("IN", arguments.convert.input, "Case file (.toml) or CAD file")->required();
   convert
       .add_option("OUT", arguments.convert.output,
                   "IGES (.igs, .iges), exact cells for ParaView (.vtu), or a drawing of a region of the plane (.svg)")
       ->required();
   add_overrides(convert, arguments.convert.overrides);
   convert.add_flag("--faces", arguments.loose_faces, "IGES: loose faces even where shells are closed; no solids");
-  convert.add_option("--unit", arguments.convert.unit, "IGES: unit of the case's lengths; mm if absent")
+  convert
+      .add_option("--unit", arguments.convert.unit,
+                  "IGES: unit of the case's lengths, mm if absent; a CAD file's are converted")
       ->type_name("UNIT");
 
   CLI::App& help = *app.add_subcommand("help", "Explains a command (help run) or case files (help case [SECTION])");
@@ -134,7 +142,10 @@ int dispatch(CLI::App& app, Arguments& arguments, std::ostream& out, std::ostrea
     return run_case(arguments.run, out, err);
   }
   if (app.got_subcommand("verify")) return verify_cases(arguments.verify, out, err);
-  if (app.got_subcommand("check")) return check_case(arguments.check, out, err);
+  if (app.got_subcommand("check")) {
+    arguments.check.format = arguments.json ? CheckFormat::json : CheckFormat::text;
+    return check_case(arguments.check, out, err);
+  }
   if (app.got_subcommand("convert")) {
     arguments.convert.faces = arguments.loose_faces ? FaceForm::loose : FaceForm::solids;
     return convert(arguments.convert, out, err);

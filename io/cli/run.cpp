@@ -1,7 +1,6 @@
 #include <chrono>
 #include <ostream>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,14 +22,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw InputError(fmt::format("{}: cannot make the folder: {}", folder.string(), error.message()));
-  }
 }
 
 void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io::Convergence& study,
@@ -75,7 +66,8 @@ void print_shortfalls(const io::Report& report, const std::string& file, std::os
 
 int run_case(const RunArguments& arguments, std::ostream& out, std::ostream& err) {
   const Clock::time_point start = Clock::now();
-  const io::CaseFile file = io::read_case(arguments.case_file, arguments.overrides);
+  const io::CaseFile file =
+      io::read_case_or_cad(arguments.case_file, arguments.overrides, {.threads = arguments.threads});
   const io::AnyModel model = io::build_model(file);
   const double read = seconds_since(start);
   io::Report report;

@@ -81,18 +81,36 @@ void check_domain_integrals(const CaseFile& file, const geometry::OrientedBounda
   complaints.throw_if_any();
 }
 
+/// Files are searched for partners of edges beyond the tolerance, since their gaps are what they are.
+geometry::OrientationOptions orientation_options(const CaseFile& file) {
+  geometry::OrientationOptions options;
+  options.tolerance = file.keys.properties.closure_tolerance;
+  if (!file.cad) return options;
+  options.largest_relative_gap = std::max(options.tolerance, geometry::OrientationOptions::file_gap);
+  for (const PatchOrigin& patch : file.cad->patches) options.shared_edges.push_back(patch.edges);
+  return options;
+}
+
 template <int Dim>
 Model<Dim> model_of(const CaseFile& file) {
   const auto& built = std::get<BuiltBoundary<Dim>>(file.shape);
   const KeyPlace& where = common_keys(file.keys.geometry).where;
   Model<Dim> model;
-  model.oriented = located(where, [&] {
-    return geometry::orient<Dim>(built.boundary, {.tolerance = file.keys.properties.closure_tolerance});
-  });
+  model.oriented = located(where, [&] { return geometry::orient<Dim>(built.boundary, orientation_options(file)); });
   check_roles(model.oriented.topology, built.claims);
   check_domain_integrals(file, model.oriented);
   model.table = located(where, [&] { return geometry::bezier_elements(model.oriented.boundary); });
+  if (file.cad) model.origins = file.cad->patches;
   return model;
+}
+
+int count_trimmed(const geometry::Boundary<2>& /*boundary*/) {
+  return 0;
+}
+int count_trimmed(const geometry::Boundary<3>& boundary) {
+  return static_cast<int>(std::count_if(boundary.patches.begin(), boundary.patches.end(), [](const auto& patch) {
+    return std::holds_alternative<geometry::TrimmedSurface>(patch.shape);
+  }));
 }
 
 template <int Dim>
@@ -103,12 +121,20 @@ GeometrySummary summary_of(const Model<Dim>& model) {
   summary.dimension = Dim;
   summary.patches = static_cast<int>(model.oriented.boundary.patches.size());
   summary.elements = static_cast<std::int64_t>(model.table.elements.size());
+  summary.trimmed_faces = count_trimmed(model.oriented.boundary);
   summary.shells = static_cast<int>(topology.shells.size());
   summary.voids = static_cast<int>(
       std::count_if(topology.shells.begin(), topology.shells.end(), [](const auto& shell) { return shell.is_void; }));
   summary.closed = topology.closed;
   summary.free_edges = static_cast<int>(topology.free_edges.size());
   summary.largest_gap = topology.largest_gap;
+  if constexpr (Dim == 3) {
+    summary.edge_tolerance = topology.largest_tolerance;
+    if (topology.largest_gap > 0.0)
+      summary.largest_gap_place.assign(topology.largest_gap_place.begin(), topology.largest_gap_place.end());
+  } else {
+    summary.edge_tolerance = topology.tolerance;
+  }
   summary.box_lower.assign(box.lower.begin(), box.lower.end());
   summary.box_upper.assign(box.upper.begin(), box.upper.end());
   return summary;
@@ -185,6 +211,7 @@ void add_properties(const CaseFile& file, const Model<Dim>& model, const RunOpti
   const solver::GeometricProperties<Dim> properties = located(
       common_keys(file.keys.geometry).where, [&] { return solver::geometric_properties(model.table, options); });
   report.geometry.closure_defect = properties.closure_defect;
+  report.geometry.pole_shift = properties.pole_shift;
   report.properties.push_back({Dim == 2 ? "perimeter" : "area",
                                single(properties.boundary_measure.value),
                                {properties.boundary_measure.error},
@@ -269,6 +296,8 @@ Report report_of(const CaseFile& file, const Model<Dim>& model, const RunOptions
   report.resolved_case = file.resolved;
   report.threads = quadrature::thread_count(run.threads);
   report.geometry = summary_of(model);
+  report.cad = file.cad;
+  if (file.cad) report.warnings = file.cad->warnings;
   add_properties(file, model, run, report);
   for (const IntegralKeys& keys : file.keys.integral) report.integrals.push_back(integrate(file, keys, model, run));
   check_finite(report.properties, file.path.string());

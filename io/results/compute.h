@@ -8,6 +8,7 @@
 
 #include "geometry/bezier/element_table.h"
 #include "geometry/topology/orientation.h"
+#include "io/cad/cad_facts.h"
 #include "io/case/case_file.h"
 #include "io/results/report.h"
 
@@ -26,6 +27,8 @@ template <int Dim>
 struct Model {
   geometry::OrientedBoundary<Dim> oriented;
   geometry::ElementTable<Dim> table;
+  /// Where each patch comes from, if it is a CAD file; else empty.
+  std::vector<PatchOrigin> origins;
 };
 using AnyModel = std::variant<Model<2>, Model<3>>;
 

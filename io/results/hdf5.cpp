@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -179,6 +180,7 @@ void write_elements(hid_t geometry, const geometry::ElementTable<Dim>& table) {
   std::vector<double> domains;
   std::vector<std::int8_t> orientations;
   std::vector<std::int8_t> polynomial;
+  std::vector<std::int32_t> regions;
   std::vector<double> nets;
   for (const geometry::BezierElement<Dim>& element : table.elements) {
     const std::span<const double> net = table.net(element);
@@ -191,6 +193,7 @@ void write_elements(hid_t geometry, const geometry::ElementTable<Dim>& table) {
     patches.push_back(element.patch);
     orientations.push_back(element.orientation);
     polynomial.push_back(element.polynomial ? 1 : 0);
+    regions.push_back(element.region);
   }
   const hsize_t count = table.elements.size();
   write_dataset(group, "nets", nets, {static_cast<hsize_t>(offsets.back()), Dim + 1});
@@ -200,6 +203,46 @@ void write_elements(hid_t geometry, const geometry::ElementTable<Dim>& table) {
   write_dataset(group, "patch", patches, {count});
   write_dataset(group, "orientation", orientations, {count});
   write_dataset(group, "polynomial", polynomial, {count});
+  write_dataset(group, "region", regions, {count});
+}
+
+/// The curves that bound the kept parts of cut elements.
+void write_regions(hid_t geometry, const std::vector<geometry::TrimmedRegion>& regions) {
+  const Handle group = open_group(geometry, "regions");
+  std::vector<std::int64_t> offsets{0};
+  std::vector<std::int64_t> curve_offsets{0};
+  std::vector<double> points;
+  for (const geometry::TrimmedRegion& region : regions) {
+    for (const geometry::HomogeneousPoints<2>& curve : region.curves) {
+      points.insert(points.end(), curve.data(), curve.data() + curve.size());
+      curve_offsets.push_back(curve_offsets.back() + curve.cols());
+    }
+    offsets.push_back(offsets.back() + static_cast<std::int64_t>(region.curves.size()));
+  }
+  write_dataset(group, "points", points, {static_cast<hsize_t>(curve_offsets.back()), 3});
+  write_dataset(group, "curve_offsets", curve_offsets, {curve_offsets.size()});
+  write_dataset(group, "offsets", offsets, {offsets.size()});
+}
+
+/// One row a patch of a CAD file.
+void write_origins(hid_t geometry, const std::vector<PatchOrigin>& origins) {
+  std::vector<std::string> entities;
+  std::vector<std::int32_t> solids;
+  std::vector<std::int32_t> levels;
+  std::vector<double> colours;
+  for (const PatchOrigin& patch : origins) {
+    entities.push_back(patch.origin.entity);
+    solids.push_back(patch.solid);
+    levels.push_back(patch.origin.level);
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    const Colour colour = patch.origin.colour.value_or(Colour{none, none, none});
+    colours.insert(colours.end(), colour.begin(), colour.end());
+  }
+  const hsize_t count = origins.size();
+  write_texts(geometry, "patch_entities", entities, {count});
+  write_dataset(geometry, "patch_solids", solids, {count});
+  write_dataset(geometry, "patch_levels", levels, {count});
+  write_dataset(geometry, "patch_colours", colours, {count, 3});
 }
 
 template <int Dim>
@@ -208,20 +251,30 @@ void write_model(hid_t geometry, const Model<Dim>& model) {
   for (const auto& patch : model.oriented.boundary.patches) names.push_back(patch.name);
   write_texts(geometry, "patch_names", names, {names.size()});
   write_elements(geometry, model.table);
+  if (!model.table.regions.empty()) write_regions(geometry, model.table.regions);
+  if (!model.origins.empty()) write_origins(geometry, model.origins);
 }
 
-void write_geometry(hid_t file, const GeometrySummary& summary, const AnyModel& model) {
+void write_geometry(hid_t file, const Report& report, const AnyModel& model) {
+  const GeometrySummary& summary = report.geometry;
   const Handle group = open_group(file, "geometry");
+  if (report.cad) {
+    write_text_attribute(group, "units", report.cad->unit);
+    write_text_attribute(group, "reader", report.cad->reader);
+    write_text_attribute(group, "format", report.cad->format);
+  }
   write_attribute<std::int32_t>(group, "dimension", summary.dimension);
   write_attribute<std::int32_t>(group, "patches", summary.patches);
   write_attribute<std::int64_t>(group, "elements", summary.elements);
-  write_attribute<std::int32_t>(group, "trimmed_faces", 0);
+  write_attribute<std::int32_t>(group, "trimmed_faces", summary.trimmed_faces);
   write_attribute<std::int8_t>(group, "closed", summary.closed ? 1 : 0);
   write_attribute<double>(group, "closure_defect", summary.closure_defect);
+  write_attribute<double>(group, "pole_shift", summary.pole_shift);
   write_attribute<std::int32_t>(group, "shells", summary.shells);
   write_attribute<std::int32_t>(group, "voids", summary.voids);
   write_attribute<std::int32_t>(group, "free_edges", summary.free_edges);
   write_attribute<double>(group, "largest_gap", summary.largest_gap);
+  write_attribute<double>(group, "edge_tolerance", summary.edge_tolerance);
   std::visit([&](const auto& known) { write_model(group, known); }, model);
 }
 
@@ -231,7 +284,7 @@ void write_report(hid_t file, const Report& report, const AnyModel& model) {
   write_text_attribute(file, "status", status_name(report.status));
   write_attribute<std::int32_t>(file, "threads", report.threads);
   write_texts(file, "resolved_case", {report.resolved_case}, {});
-  write_geometry(file, report.geometry, model);
+  write_geometry(file, report, model);
   write_quantities(file, "properties", report.properties);
   write_quantities(file, "integrals", report.integrals);
   write_expectations(file, report.expectations);

@@ -11,10 +11,15 @@ namespace isorim::io {
 /// boundary itself, so that everything can be computed again from this file:
 ///
 ///   /                       attributes isorim, case, status, threads; dataset resolved_case (text)
-///   /geometry               attributes as in results.json; dataset patch_names
+///   /geometry               attributes as in results.json; dataset patch_names; of a CAD file also patch_entities,
+///                           patch_solids (-1: loose), patch_levels, patch_colours (patches x 3, NaN: none)
 ///   /geometry/elements      nets: points x (Dim + 1), homogeneous, element by element, the first parameter fastest;
 ///                           offsets: elements + 1, in points; degrees: elements x (Dim - 1);
-///                           domains: elements x (Dim - 1) x 2; patch, orientation, polynomial: elements
+///                           domains: elements x (Dim - 1) x 2; patch, orientation, polynomial: elements;
+///                           region: elements, the index of a cut element's region, else -1
+///   /geometry/regions       if there are cut elements: offsets: regions + 1, in curves; curve_offsets: curves + 1,
+///                           in points; points: points x 3, homogeneous (w s, w t, w) in the element's unit cell,
+///                           curve by curve: Bézier curves with the kept part on their left
 ///   /properties/NAME        datasets value, error; attributes evaluations, status, reason where they apply
 ///   /integrals/NAME         the same
 ///   /expectations/NAME      datasets value, expected; attributes error, difference, rtol, atol, met

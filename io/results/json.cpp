@@ -1,24 +1,15 @@
 #include "io/results/json.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/atomic_file.h"
+#include "io/results/json_parts.h"
 
 namespace isorim::io {
 namespace {
-
-/// Keeps keys in the order in which they are added.
-using Json = nlohmann::ordered_json;
-
-/// The library prints the shortest text that reads back to the same bits; null for what is not finite.
-Json number(double x) {
-  return std::isfinite(x) ? Json(x) : Json(nullptr);
-}
 
 Json optional_number(const std::optional<double>& x) {
   return x ? number(*x) : Json(nullptr);
@@ -39,12 +30,6 @@ Json entries_json(const Entries& entries) {
     }
     list.push_back(std::move(row));
   }
-  return list;
-}
-
-Json list_json(const std::vector<double>& values) {
-  Json list = Json::array();
-  for (const double x : values) list.push_back(number(x));
   return list;
 }
 
@@ -86,24 +71,6 @@ Json expectations_json(const std::vector<ExpectationResult>& results) {
   return list;
 }
 
-Json geometry_json(const GeometrySummary& geometry) {
-  Json json;
-  json["dimension"] = geometry.dimension;
-  json["patches"] = geometry.patches;
-  json["elements"] = geometry.elements;
-  // Shapes of a case file are neither trimmed nor in a unit of their own.
-  json["trimmed_faces"] = 0;
-  json["closed"] = geometry.closed;
-  json["closure_defect"] = number(geometry.closure_defect);
-  json["units"] = nullptr;
-  json["shells"] = geometry.shells;
-  json["voids"] = geometry.voids;
-  json["free_edges"] = geometry.free_edges;
-  json["largest_gap"] = number(geometry.largest_gap);
-  json["bounding_box"] = {list_json(geometry.box_lower), list_json(geometry.box_upper)};
-  return json;
-}
-
 }  // namespace
 
 std::string to_json(const Report& report) {
@@ -111,7 +78,8 @@ std::string to_json(const Report& report) {
   json["isorim"] = report.version;
   json["case"] = report.title;
   json["status"] = status_name(report.status);
-  json["geometry"] = geometry_json(report.geometry);
+  json["geometry"] = geometry_json(report.geometry, report.cad);
+  if (report.cad) json["cad"] = cad_json(*report.cad);
   json["properties"] = quantities_json(report.properties);
   json["integrals"] = quantities_json(report.integrals);
   json["expectations"] = expectations_json(report.expectations);
@@ -121,7 +89,7 @@ std::string to_json(const Report& report) {
   json["threads"] = report.threads;
   json["warnings"] = report.warnings;
   json["resolved_case"] = report.resolved_case;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 void write_json(const std::filesystem::path& path, const Report& report) {
@@ -146,7 +114,7 @@ void write_verification_json(const std::filesystem::path& path, const std::vecto
   json["isorim"] = program_version();
   json["status"] = worst == 0 ? "ok" : "failed";
   json["cases"] = std::move(list);
-  write_file(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_file(path, json_text(json));
 }
 
 }  // namespace isorim::io

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/cad/cad_facts.h"
 #include "quadrature/estimate.h"
 
 /// What a run found, free of dimension and of file formats: the writers of the terminal's table, results.json and
@@ -64,17 +65,24 @@ std::string_view status_name(quadrature::Status status);
 /// 0, 1 or 3.
 int exit_status(RunStatus status);
 
+/// Lengths in the units of the shape.
 struct GeometrySummary {
   int dimension = 0;
   int patches = 0;
   std::int64_t elements = 0;
+  int trimmed_faces = 0;
   int shells = 0;
   int voids = 0;
   bool closed = false;
   int free_edges = 0;
   double closure_defect = 0.0;
-  /// The largest distance between ends or edges that were taken as the same, in the units of the shape.
+  /// By how much the enclosed area or volume may be wrong for the gaps: what moving the pole by the size changes.
+  double pole_shift = 0.0;
+  /// The largest distance between ends or edges that were taken as the same, and the largest that would have been.
   double largest_gap = 0.0;
+  double edge_tolerance = 0.0;
+  /// A point at the largest gap; empty in the plane.
+  std::vector<double> largest_gap_place;
   /// Of the control net.
   std::vector<double> box_lower;
   std::vector<double> box_upper;
@@ -94,6 +102,8 @@ struct Report {
   std::string resolved_case;
   RunStatus status = RunStatus::ok;
   GeometrySummary geometry;
+  /// If the shape comes from a CAD file.
+  std::optional<CadFacts> cad;
   std::vector<Quantity> properties;
   std::vector<Quantity> integrals;
   std::vector<ExpectationResult> expectations;

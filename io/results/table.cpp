@@ -100,6 +100,16 @@ std::string status_line(const Report& report) {
   return line;
 }
 
+/// Of a CAD file: its unit, and what tells how closed it is.
+std::string cad_line(const Report& report) {
+  if (!report.cad) return "";
+  const GeometrySummary& geometry = report.geometry;
+  const std::string& unit = report.cad->unit;
+  return fmt::format("  {}; unit {}, largest gap {} {}, gaps may cost {} {}^{} of {}\n", report.cad->format, unit,
+                     small_number(geometry.largest_gap), unit, small_number(geometry.pole_shift), unit,
+                     geometry.dimension, geometry.dimension == 2 ? "area" : "volume");
+}
+
 }  // namespace
 
 TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
@@ -136,8 +146,9 @@ std::string exact_number(double x) {
 }
 
 std::string geometry_line(const GeometrySummary& geometry) {
+  const std::string trimmed = geometry.trimmed_faces > 0 ? fmt::format(" ({} trimmed)", geometry.trimmed_faces) : "";
   std::string line =
-      fmt::format("{}D, {}, {}, {}", geometry.dimension, counted(geometry.patches, "patch", "patches"),
+      fmt::format("{}D, {}{}, {}, {}", geometry.dimension, counted(geometry.patches, "patch", "patches"), trimmed,
                   counted(geometry.elements, "element", "elements"), geometry.closed ? "closed" : "OPEN");
   if (geometry.voids > 0) {
     line += ", " + (geometry.dimension == 2 ? counted(geometry.voids, "hole", "holes")
@@ -159,8 +170,8 @@ std::string results_text(const Report& report) {
     }
   }
   add_quantity(table, report, {"closure_defect", single(report.geometry.closure_defect), {}, {}, {}, ""});
-  return fmt::format("{}\n  {}\n\n{}\n  {}\n", report.title, geometry_line(report.geometry), table.text(2),
-                     status_line(report));
+  return fmt::format("{}\n  {}\n{}\n{}\n  {}\n", report.title, geometry_line(report.geometry), cad_line(report),
+                     table.text(2), status_line(report));
 }
 
 std::string verification_text(const std::vector<VerifiedCase>& cases) {

@@ -74,8 +74,8 @@ const std::vector<BadCase> keys{
      "[geometry]\ntype = 'circel'\n",
      {"case.toml:2: geometry.type: found the text \"circel\"", "(did you mean \"circle\"?)"}},
     {"LaterType",
-     "[geometry]\ntype = 'file'\npath = 'a.igs'\n",
-     {"the type \"file\" is not available in this version"}},
+     "[geometry]\ntype = 'hull'\noffsets = 'a.csv'\n",
+     {"the type \"hull\" is not available in this version"}},
     {"LaterSection", circle + "[analysis]\nequation = 'laplace'\n", {"analysis: not available in this version"}},
     {"LaterKey", circle + "clip = { normal = [1, 0] }\n", {"geometry.clip: not available in this version"}},
 };

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "io/cad/cad_model.h"
+
+namespace isorim::io {
+
+enum class CadFormat { iges, step };
+
+/// The format of a file: by its content, then by its extension. Empty if neither tells. Throws InputError if the file
+/// cannot be read.
+std::optional<CadFormat> cad_format(const std::filesystem::path& path);
+
+/// Whether the name ends like that of a CAD file (.igs, .iges, .stp, .step, in any case).
+bool has_cad_extension(const std::filesystem::path& path);
+
+/// The formats that read_cad() knows, for messages: "IGES (.igs, .iges), STEP (.stp, .step)".
+std::string cad_formats();
+
+/// What is switched off in the program that wrote the file.
+enum class BlankedEntities { skip, include };
+
+/// What becomes of faces and curves that cannot be read.
+enum class BadEntities {
+  /// The file is refused, with the entity.
+  refuse,
+  /// They are left out with a warning each: for reports, not for numbers.
+  skip,
+};
+
+struct CadOptions {
+  BlankedEntities blanked = BlankedEntities::skip;
+  BadEntities bad_entities = BadEntities::refuse;
+};
+
+/// Reads a CAD file of any format that we know. Throws InputError, naming the file and the line or entity, if it cannot
+/// be read or is of no known format.
+CadModel read_cad(const std::filesystem::path& path, const CadOptions& options = {});
+
+}  // namespace isorim::io
