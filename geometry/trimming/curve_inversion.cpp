@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -256,6 +257,25 @@ bool is_monotone(const std::vector<FollowedPoint>& points, int d, double slack) 
   return true;
 }
 
+/// The straight line along which the points run, if they keep to a line of constant parameter. `deviation`: of the
+/// curve from the surface.
+std::optional<NurbsCurve<2>> parameter_line(const CurveFollower& follower, const std::vector<FollowedPoint>& points,
+                                            double deviation, const InversionOptions& options) {
+  const ParameterRectangle& rectangle = follower.rectangle();
+  // A curve is known no better than it keeps to the surface; sides are where files want it to be.
+  const double along = std::max(4.0 * options.tolerance, deviation);
+  const double snap = std::max(1e-9 * options.size, 2.0 * deviation);
+  for (int d = 0; d < 2; ++d) {
+    const std::optional<double> value = constant_parameter(points, rectangle, d, along, snap);
+    if (!value || !is_monotone(points, 1 - d, rectangle.tolerance()[1 - d])) continue;
+    Point2 from = follower.snapped(points.front(), 1 - d, snap);
+    Point2 to = follower.snapped(points.back(), 1 - d, snap);
+    from[d] = to[d] = *value;
+    return straight(from, to);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 CurveInverter::CurveInverter(const ParameterRectangle& rectangle, const InversionOptions& options)
@@ -304,28 +324,19 @@ void CurveInverter::append(const NurbsCurve<3>& curve, int depth, InvertedCurve&
   const std::vector<FollowedPoint> points = follower.follow();
   const bool is_at_pole = std::all_of(points.begin(), points.end(), [](const FollowedPoint& p) { return p.pole >= 0; });
   if (is_at_pole) return;
-  double deviation = 0.0;
-  for (const FollowedPoint& p : points) {
-    deviation = std::max(deviation, p.distance);
-    if (p.distance > result.deviation) {
-      result.deviation = p.distance;
-      result.farthest = p.target;
-    }
+  const auto farthest =
+      std::max_element(points.begin(), points.end(),
+                       [](const FollowedPoint& a, const FollowedPoint& b) { return a.distance < b.distance; });
+  if (farthest->distance > result.deviation) {
+    result.deviation = farthest->distance;
+    result.farthest = farthest->target;
   }
   if (result.deviation > options_.largest_deviation) {
     result.curves.clear();
     return;
   }
-  // A curve is known no better than it keeps to the surface; sides are where files want it to be.
-  const double along = std::max(4.0 * options_.tolerance, deviation);
-  const double snap = std::max(1e-9 * options_.size, 2.0 * deviation);
-  for (int d = 0; d < 2; ++d) {
-    const std::optional<double> value = constant_parameter(points, rectangle_, d, along, snap);
-    if (!value || !is_monotone(points, 1 - d, rectangle_.tolerance()[1 - d])) continue;
-    Point2 from = follower.snapped(points.front(), 1 - d, snap);
-    Point2 to = follower.snapped(points.back(), 1 - d, snap);
-    from[d] = to[d] = *value;
-    result.curves.push_back(straight(from, to));
+  if (std::optional<NurbsCurve<2>> line = parameter_line(follower, points, farthest->distance, options_)) {
+    result.curves.push_back(std::move(*line));
     return;
   }
   Fit fit(follower, curve.domain(), options_);
