@@ -105,6 +105,17 @@ void append_decided(const NurbsCurve<2>& curve, int d, double value, const std::
   for (const CurvePart& part : decided) append_part(parts, part);
 }
 
+/// The largest number of neighbours that are all true.
+int longest_run(const Eigen::Array<bool, Eigen::Dynamic, 1>& flags) {
+  int longest = 0;
+  int run = 0;
+  for (const bool flag : flags) {
+    run = flag ? run + 1 : 0;
+    longest = std::max(longest, run);
+  }
+  return longest;
+}
+
 /// How far the control points lie beyond a side, in space.
 double excess_of(const NurbsCurve<2>& curve, const SideLine& line, const ParameterRectangle& rectangle) {
   const Points<2> controls = curve.control_points();
@@ -144,11 +155,10 @@ std::vector<CurvePart> parts_about_line(const NurbsCurve<2>& curve, int d, doubl
   const Eigen::ArrayXd distances = curve.homogeneous().row(d).array() / curve.homogeneous().row(2).array() - value;
   const bool above = distances.minCoeff() >= -tolerance;
   const bool below = distances.maxCoeff() <= tolerance;
-  if (above || below) {
-    // A curve that runs along the line for a while only.
-    if (above == below) return {{curve.domain(), 0}};
-    if (distances.abs().minCoeff() > tolerance) return {{curve.domain(), above ? 1 : -1}};
-  }
+  if (above && below) return {{curve.domain(), 0}};
+  // A segment along the line has all its control points there.
+  if ((above || below) && longest_run(distances.abs() <= tolerance) <= curve.degree())
+    return {{curve.domain(), above ? 1 : -1}};
   std::vector<CurvePart> parts;
   for (const BezierSegment& segment : bezier_segments({curve.knots(), curve.homogeneous()})) {
     const SegmentSides sides(segment.coefficients, segment.domain, d, value, tolerance);

@@ -107,15 +107,23 @@ double bernstein_product(int n, int i, int j) {
   return value;
 }
 
+/// bernstein_product() of one degree: n + 1 x n.
+Eigen::MatrixXd bernstein_products(int n) {
+  Eigen::MatrixXd products(n + 1, n);
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j < n; ++j) products(i, j) = bernstein_product(n, i, j);
+  return products;
+}
+
 /// Twice the area that the rays from `origin` to the points of a polynomial piece sweep over.
-double swept_area(const PlanePiece& piece, const Point2& origin) {
-  const int n = static_cast<int>(piece.net.cols()) - 1;
+double swept_area(const PlanePiece& piece, const Point2& origin, const Eigen::MatrixXd& products) {
+  const Eigen::Index n = piece.net.cols() - 1;
   double sum = 0.0;
-  for (int i = 0; i <= n; ++i) {
+  for (Eigen::Index i = 0; i <= n; ++i) {
     const Vector2 a = piece.control_point(i) - origin;
-    for (int j = 0; j < n; ++j) {
+    for (Eigen::Index j = 0; j < n; ++j) {
       const Vector2 leg = piece.control_point(j + 1) - piece.control_point(j);
-      sum += bernstein_product(n, i, j) * (a.x() * leg.y() - a.y() * leg.x());
+      sum += products(i, j) * (a.x() * leg.y() - a.y() * leg.x());
     }
   }
   return sum;
@@ -158,10 +166,13 @@ double signed_area(const LoopRun& curves, const ParameterRectangle& rectangle) {
   const Vector2 whole = rectangle.lengths();
   const double least = 1e-9 * box.prod() + 1e-14 * (box.x() * whole.y() + box.y() * whole.x());
   const Point2 origin = pieces.front().start();
+  Eigen::MatrixXd products(0, 0);
   double area = 0.0;
   for (const PlanePiece& piece : pieces) {
     const bool is_polynomial = (piece.net.row(2).array() == piece.net(2, 0)).all();
-    area += is_polynomial ? swept_area(piece, origin) : extrapolated_area(piece, origin);
+    if (is_polynomial && products.rows() != piece.net.cols())
+      products = bernstein_products(static_cast<int>(piece.net.cols()) - 1);
+    area += is_polynomial ? swept_area(piece, origin, products) : extrapolated_area(piece, origin);
   }
   return std::abs(area) <= least ? 0.0 : area;
 }

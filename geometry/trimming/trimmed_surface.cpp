@@ -58,6 +58,8 @@ std::optional<Point2> point_outside(const PlanePiece& piece, const AllowedParame
 }
 
 void require_inside(const NurbsCurve<2>& curve, const AllowedParameters& allowed, const std::string& which) {
+  const Points<2> controls = curve.control_points();
+  if (allowed.contains(controls.rowwise().minCoeff()) && allowed.contains(controls.rowwise().maxCoeff())) return;
   for (const BezierSegment& segment : bezier_segments({curve.knots(), curve.homogeneous()})) {
     const std::optional<Point2> outside = point_outside(PlanePiece(segment.coefficients), allowed, 0);
     if (!outside) continue;
