@@ -81,9 +81,9 @@ int sign_of(double x) {
   return x > 0.0 ? 1 : x < 0.0 ? -1 : 0;
 }
 
-/// The root of a polynomial whose values at the ends have different signs: Newton, kept in a shrinking bracket.
-double bracketed_root(const BernsteinCoefficients& polynomial, double low, double high) {
-  const int sign_low = sign_of(evaluate(polynomial, low));
+/// The root of a polynomial that has the sign given at `low` and the other one at `high`: Newton, kept in a shrinking
+/// bracket.
+double bracketed_root(const BernsteinCoefficients& polynomial, double low, double high, int sign_low) {
   const Eigen::Index degree = polynomial.size() - 1;
   const BernsteinCoefficients slope = static_cast<double>(degree) * (polynomial.tail(degree) - polynomial.head(degree));
   double t = 0.5 * (low + high);
@@ -107,13 +107,18 @@ void collect_roots(const BernsteinCoefficients& whole, Interval part, const Bern
   const Eigen::ArrayXd steps = (local.tail(degree) - local.head(degree)).array();
   const bool is_monotone = (steps >= 0.0).all() || (steps <= 0.0).all();
   if (is_monotone || part.length() < 1e-9) {
-    if (local(0) * local(degree) < 0.0) roots.push_back(bracketed_root(whole, part.first, part.last));
+    if (local(0) * local(degree) < 0.0)
+      roots.push_back(bracketed_root(whole, part.first, part.last, sign_of(local(0))));
     return;
   }
   const double middle = part.middle();
-  collect_roots(whole, {part.first, middle}, restrict_to(local, {0.0, 0.5}), roots);
-  if (evaluate(local, 0.5) == 0.0) roots.push_back(middle);
-  collect_roots(whole, {middle, part.last}, restrict_to(local, {0.5, 1.0}), roots);
+  const BernsteinCoefficients before = restrict_to(local, {0.0, 0.5});
+  BernsteinCoefficients after = restrict_to(local, {0.5, 1.0});
+  // One sign in the middle for both, whatever the rounding: a root there belongs to exactly one of them.
+  after(0) = before(degree);
+  collect_roots(whole, {part.first, middle}, before, roots);
+  if (after(0) == 0.0) roots.push_back(middle);
+  collect_roots(whole, {middle, part.last}, after, roots);
 }
 
 /// The value of largest modulus among samples of a stretch.

@@ -65,6 +65,17 @@ TEST(SignChart, HasTheSimpleRoots) {
   EXPECT_EQ(chart.sign_between(0.9, 1.0), -1);
 }
 
+TEST(SignChart, FindsRootsWhereItBisects) {
+  for (const double middle : {0.5, 0.25, 0.75, 0.375})
+    for (int k = 1; k < 200; ++k) {
+      const double other = 0.005 * k + 1e-4;
+      if (std::abs(other - middle) < 1e-3) continue;
+      const SignChart chart = sign_chart(0.37 * with_roots({middle, other, -0.4, 1.9}), 1e-15);
+      ASSERT_EQ(chart.roots.size(), 2U) << middle << " " << other;
+      EXPECT_NEAR(chart.roots[other < middle ? 1 : 0], middle, 1e-13);
+    }
+}
+
 TEST(SignChart, PassesOverDoubleRootsAndEnds) {
   EXPECT_TRUE(sign_chart(with_roots({0.4, 0.4}), 1e-14).roots.empty());
   EXPECT_TRUE(sign_chart(with_roots({0.4, 0.4 + 1e-8}), 1e-14).roots.empty());
