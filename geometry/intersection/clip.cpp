@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "geometry/bezier/element_table.h"
@@ -56,6 +57,14 @@ bool cancel(const CapEdge& a, const CapEdge& b, double distance) {
   return nearest <= 0.05 * (middle - start).norm();
 }
 
+/// Of a face on the tool: the solid lies on the kept side of it.
+bool bounds_kept_side(const Patch<3>& patch, const ImplicitSurface& implicit) {
+  const NurbsSurface<3>& surface = surface_of(patch.shape);
+  const Point2 inside(surface.knots_u().domain().middle(), surface.knots_v().domain().middle());
+  const SurfaceJet<3> jet = evaluate_jet(surface, inside);
+  return patch.orientation * jet.du.cross(jet.dv).dot(gradient(implicit, jet.point)) > 0.0;
+}
+
 /// What is left of a solid, before it is closed.
 struct OpenPart {
   Boundary<3> boundary;
@@ -89,7 +98,8 @@ class Clipper {
  private:
   void append(const Patch<3>& patch, const ImplicitSurface& implicit, OpenPart& part) const {
     ClippedFace face = clip_face(patch.shape, implicit, {.tolerance = options_.tolerance, .size = size()});
-    if (face.is_reduced && (face.shape || !face.lies_on_tool)) part.is_reduced = true;
+    const bool is_own_cap = face.lies_on_tool && !face.shape && bounds_kept_side(patch, implicit);
+    if (face.is_reduced && !is_own_cap) part.is_reduced = true;
     for (NurbsCurve<2>& cut : face.cuts) {
       // Seen against the outward normal the face lies on the left of its edge, so the cap on that of the reverse.
       CapEdge edge{surface_of(patch.shape), patch.orientation > 0 ? reverse(cut) : std::move(cut)};
