@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "geometry/trimming/lifted_curve.h"
 #include "io/atomic_file.h"
 #include "io/iges/free_format.h"
 #include "io/iges/model_writer.h"
@@ -94,10 +95,6 @@ WriterOptions checked(WriterOptions options, std::size_t patches) {
   return options;
 }
 
-bool encloses(const Box<3>& outer, const Box<3>& inner) {
-  return (outer.lower.array() <= inner.lower.array()).all() && (inner.upper.array() <= outer.upper.array()).all();
-}
-
 /// Which outer shell each void lies directly in.
 class VoidOwners {
  public:
@@ -127,23 +124,36 @@ class VoidOwners {
     return boundary;
   }
 
-  /// The void is one too if nothing but that outer shell is there.
+  /// A point of the shell lies in the box of the other's control points, without which it cannot lie in it.
+  bool may_lie_within(std::size_t inner, std::size_t outer) const {
+    const auto& shape = oriented_.boundary.patches[static_cast<std::size_t>(shells()[inner].patches.front())].shape;
+    const NurbsCurve<2> pcurve = trim_loops(shape).front().curves.front();
+    const Point<3> point = lifted_point(surface_of(shape), pcurve, pcurve.domain().first);
+    const Box<3>& box = boxes_[outer];
+    return (box.lower.array() <= point.array()).all() && (point.array() <= box.upper.array()).all();
+  }
+
+  /// The inner one is a void where there are only the two of them.
   bool lies_within(std::size_t inner, std::size_t outer) const {
+    if (!may_lie_within(inner, outer)) return false;
     const auto alone = orient(part({&shells()[outer], &shells()[inner]}));
-    return std::any_of(alone.topology.shells.begin(), alone.topology.shells.end(),
-                       [](const Shell<3>& shell) { return shell.is_void; });
+    const int first_inner_patch = static_cast<int>(shells()[outer].patches.size());
+    return std::any_of(alone.topology.shells.begin(), alone.topology.shells.end(), [&](const Shell<3>& shell) {
+      return shell.is_void && shell.patches.front() >= first_inner_patch;
+    });
   }
 
   std::size_t owner_of(std::size_t inner) const {
-    std::vector<std::size_t> candidates;
+    std::vector<std::size_t> holders;
     for (std::size_t i = 0; i < shells().size(); ++i) {
-      if (shells()[i].closed && !shells()[i].is_void && encloses(boxes_[i], boxes_[inner])) candidates.push_back(i);
+      if (shells()[i].closed && !shells()[i].is_void && lies_within(inner, i)) holders.push_back(i);
     }
-    std::sort(candidates.begin(), candidates.end(),
-              [&](auto a, auto b) { return boxes_[a].diagonal() < boxes_[b].diagonal(); });
-    // The smallest one that holds it; with a single candidate there is no question.
-    for (const std::size_t candidate : candidates) {
-      if (candidate == candidates.back() || lies_within(inner, candidate)) return candidate;
+    // Of nested ones the one that lies in all the others.
+    for (const std::size_t holder : holders) {
+      const bool is_innermost = std::all_of(holders.begin(), holders.end(), [&](std::size_t other) {
+        return other == holder || lies_within(holder, other);
+      });
+      if (is_innermost) return holder;
     }
     throw GeometryError(fmt::format("shell {} is a void, but no outer shell holds it", inner + 1));
   }

@@ -455,6 +455,33 @@ TEST(IgesWriter, EdgesThatMeetSeveralShorterOnesAreCut) {
   EXPECT_EQ(edges.integer(), 15);
 }
 
+/// A unit cube of which each face is cut out of a surface that reaches ten times as far.
+Boundary<3> cube_of_large_surfaces(const Point3& corner) {
+  Boundary<3> cube = geometry::cube(1.0, corner);
+  const geometry::KnotVector knots(1, {-10.0, -10.0, 11.0, 11.0});
+  for (auto& patch : cube.patches) {
+    const NurbsSurface<3> face = surface_of(patch.shape);
+    Points<3> points(3, 4);
+    for (int i = 0; i < 4; ++i) points.col(i) = evaluate(face, {i % 2 == 0 ? -10.0 : 11.0, i < 2 ? -10.0 : 11.0});
+    const TrimLoop square = geometry::testing::polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+    patch.shape = TrimmedSurface(NurbsSurface<3>::from_points(knots, knots, points), {square});
+  }
+  return cube;
+}
+
+TEST(IgesWriter, SurfacesOfVoidsMayReachBeyondTheSolid) {
+  Boundary<3> boundary = geometry::sphere(3.0);
+  append(boundary, cube_of_large_surfaces({0, 0, 0}), "_void");
+  append(boundary, geometry::sphere(3.0, {7, 0, 0}), "_apart");
+  const IgesText text = iges_text(orient(boundary));
+  EXPECT_EQ(text.report.solids, 2);
+  EXPECT_EQ(text.report.solid_faces, 8);
+  const File file = parse(text.text, "void.igs");
+  std::vector<std::size_t> shells;
+  for (const Entity* solid : entities_of(file, 186)) shells.push_back(SolidCheck(file).read(*solid).size());
+  EXPECT_THAT(shells, UnorderedElementsAre(2U, 1U));
+}
+
 TEST(IgesWriter, VoidsBelongToTheirSolids) {
   Boundary<3> boundary = geometry::sphere(3.0);
   append(boundary, geometry::cube(1.0, {-2, 0, 0}), "_void");
