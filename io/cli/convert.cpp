@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstddef>
 #include <ostream>
 #include <string>
 #include <system_error>
@@ -57,13 +58,25 @@ std::string report_text(const io::iges::WriterReport& report) {
   return text;
 }
 
+/// None where the patches are no longer those of the file: clipped ones.
+std::vector<io::iges::Look> looks_of(const std::vector<io::PatchOrigin>& origins, std::size_t patches) {
+  std::vector<io::iges::Look> looks;
+  if (origins.size() != patches) return looks;
+  for (const io::PatchOrigin& origin : origins) looks.push_back({origin.origin.colour, origin.origin.level});
+  return looks;
+}
+
 std::string write_iges(const ConvertArguments& arguments, const io::CaseFile& file, const io::AnyModel& model) {
   io::iges::WriterOptions options;
   options.form = arguments.faces == FaceForm::loose ? io::iges::Form::faces : io::iges::Form::solids;
   options.title = file.title();
   options.unit = file.cad ? file.cad->unit : arguments.unit.value_or("mm");
   const io::iges::WriterReport report = std::visit(
-      [&](const auto& known) { return io::iges::write_iges(arguments.output, known.oriented, options); }, model);
+      [&](const auto& known) {
+        options.looks = looks_of(known.origins, known.oriented.boundary.patches.size());
+        return io::iges::write_iges(arguments.output, known.oriented, options);
+      },
+      model);
   return fmt::format("{}, unit {}", report_text(report), options.unit);
 }
 
@@ -97,7 +110,7 @@ io::CaseFile read_input(const ConvertArguments& arguments) {
 
 }  // namespace
 
-int convert(const ConvertArguments& arguments, std::ostream& out, std::ostream& /*err*/) {
+int convert(const ConvertArguments& arguments, std::ostream& out, std::ostream& err) {
   const Format format = format_of(arguments.output);
   require_different_files(arguments);
   const io::CaseFile file = read_input(arguments);
@@ -105,6 +118,11 @@ int convert(const ConvertArguments& arguments, std::ostream& out, std::ostream& 
   const std::string content = format == Format::iges  ? write_iges(arguments, file, model)
                               : format == Format::svg ? write_svg(arguments, file, model)
                                                       : write_vtu(arguments, model);
+  if (file.cad) {
+    for (const std::string& warning : file.cad->warnings) {
+      print_message(err, fmt::format("{}: {}", arguments.input.string(), warning));
+    }
+  }
   out << fmt::format("{}: {}\n", arguments.output.string(), content);
   return 0;
 }

@@ -5,8 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "geometry/shapes/solids.h"
+#include "geometry/topology/orientation.h"
 #include "io/iges/file.h"
 #include "io/iges/reader.h"
+#include "io/iges/writer.h"
 #include "tests/io/cli/program_test.h"
 
 namespace isorim::testing {
@@ -62,6 +65,34 @@ TEST_F(Convert, PicturesOfEitherKind) {
   EXPECT_THAT(read_file(path("torus.vtu")), HasSubstr("RationalWeights"));
   EXPECT_EQ(run({"convert", write("rectangle.toml", rectangle), path("rectangle.svg")}).status, 0);
   EXPECT_THAT(read_file(path("rectangle.svg")), HasSubstr("</svg>"));
+}
+
+TEST_F(Convert, CadFilesKeepNamesLooksAndBits) {
+  io::iges::WriterOptions options;
+  options.unit = "cm";
+  for (int i = 0; i < 6; ++i) options.looks.push_back({io::Colour{1.0, 0.5, 0.0}, i});
+  io::iges::write_iges(path("cube.igs"), orient(geometry::cube(1.0)), options);
+  const ProgramResult result = run({"convert", path("cube.igs"), path("again.igs")});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(result.out, path("again.igs") + ": 1 solid of 6 faces, unit cm\n");
+  const io::CadModel once = io::read_iges(path("cube.igs"));
+  const io::CadModel twice = io::read_iges(path("again.igs"));
+  ASSERT_EQ(twice.faces.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(twice.faces[i].origin.name, once.faces[i].origin.name);
+    EXPECT_EQ(twice.faces[i].origin.level, once.faces[i].origin.level);
+    EXPECT_EQ(twice.faces[i].origin.colour, (io::Colour{1.0, 0.5, 0.0}));
+    EXPECT_EQ(twice.faces[i].face.surface.homogeneous(), once.faces[i].face.surface.homogeneous());
+  }
+}
+
+TEST_F(Convert, UnitsOfCadFilesAreConverted) {
+  io::iges::write_iges(path("cube.igs"), orient(geometry::cube(1.0)), {.unit = "in"});
+  EXPECT_EQ(run({"convert", path("cube.igs"), path("mm.igs"), "--unit", "mm"}).status, 0);
+  const io::iges::File file = io::iges::read_file(path("mm.igs"));
+  EXPECT_EQ(file.global.unit, "mm");
+  EXPECT_NEAR(file.global.largest_coordinate, 25.4, 1e-14);
 }
 
 TEST_F(Convert, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
