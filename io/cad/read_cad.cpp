@@ -11,6 +11,7 @@
 
 #include "geometry/errors.h"
 #include "io/iges/reader.h"
+#include "io/occt/occt_reader.h"
 
 namespace isorim::io {
 namespace {
@@ -85,8 +86,10 @@ CadModel read_cad(const std::filesystem::path& path, const CadOptions& options) 
     throw InputError(fmt::format("{}: found no format that is known; expected {}", path.string(), cad_formats()));
   }
   if (*format == CadFormat::step) {
-    throw InputError(fmt::format("{}: a STEP file, but this program was built without STEP", path.string()));
+    if (options.repair) throw InputError(fmt::format("{}: found a STEP file; repair is for IGES files", path.string()));
+    return read_step(path);
   }
+  if (options.repair) return read_iges_repaired(path, *options.repair);
   IgesOptions iges;
   iges.include_blanked = options.blanked == BlankedEntities::include;
   iges.skip_bad_entities = options.bad_entities == BadEntities::skip;

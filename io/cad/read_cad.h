@@ -34,9 +34,12 @@ enum class BadEntities {
 struct CadOptions {
   BlankedEntities blanked = BlankedEntities::skip;
   BadEntities bad_entities = BadEntities::refuse;
+  /// IGES alone: read by OpenCASCADE, repaired and sewn within this many millimetres.
+  std::optional<double> repair = std::nullopt;
 };
 
-/// Reads a CAD file of any format that we know. Throws InputError, naming the file and the line or entity, if it cannot
+/// Reads a CAD file of any format that we know: IGES by ourselves unless repair is asked for, STEP by OpenCASCADE where
+/// that is built in (CadModel::reader tells). Throws InputError, naming the file and the line or entity, if it cannot
 /// be read or is of no known format.
 CadModel read_cad(const std::filesystem::path& path, const CadOptions& options = {});
 

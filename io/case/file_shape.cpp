@@ -34,8 +34,9 @@ void require_all_faces(const CadFacts& facts) {
 
 AssembledModel load(const FileKeys& keys, const std::filesystem::path& path, const FileShapeOptions& options) {
   const bool refuse_bad = options.refused_faces == RefusedFaces::refuse;
-  const CadModel model =
-      read_cad(path, {.blanked = keys.blanked, .bad_entities = refuse_bad ? BadEntities::refuse : BadEntities::skip});
+  const CadModel model = read_cad(path, {.blanked = keys.blanked,
+                                         .bad_entities = refuse_bad ? BadEntities::refuse : BadEntities::skip,
+                                         .repair = keys.repair});
   try {
     AssembledModel assembled = assemble(model, {.unit = keys.units,
                                                 .dimension = keys.dimension,

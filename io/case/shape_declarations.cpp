@@ -616,6 +616,12 @@ const Schema<FileKeys>& schema<FileKeys>() {
           .choice("blanked", &FileKeys::blanked,
                   {{"skip", BlankedEntities::skip}, {"include", BlankedEntities::include}},
                   {.text = "What becomes of faces and curves that are switched off in the file."})
+          .key("repair", &FileKeys::repair,
+               {.text =
+                    "IGES alone: OpenCASCADE reads the file, repairs it and sews faces within this distance, instead "
+                    "of isorim, which alters nothing. For files that are refused or open otherwise.",
+                .unit = "mm",
+                .range = Range::above(0)})
           .key("names", &FileKeys::names, {.text = "Only faces and curves that the file gives these names."})
           .key("levels", &FileKeys::levels, {.text = "Only faces and curves on these levels (layers)."}));
   return declared;

@@ -280,6 +280,8 @@ struct FileKeys : ShapeKeys {
   std::string units;
   std::optional<int> dimension;
   BlankedEntities blanked = BlankedEntities::skip;
+  /// Millimetres.
+  std::optional<double> repair;
   std::vector<std::string> names;
   std::vector<int> levels;
   /// Where a relative path begins, the folder of the case file; set by its reader.
