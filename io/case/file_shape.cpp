@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -12,6 +14,7 @@
 #include "io/cad/assemble.h"
 #include "io/cad/read_cad.h"
 #include "io/case/curve_builder.h"
+#include "io/case/face_builder.h"
 
 namespace isorim::io {
 namespace {
@@ -65,13 +68,50 @@ AssembledModel load_located(const FileKeys& keys, const FileShapeOptions& option
   }
 }
 
+/// Cuts the solids of a file; what is known of the patches stays with those that are left.
+geometry::Boundary<3> clipped_file(const geometry::Boundary<3>& solid, const FileKeys& keys, CadFacts& facts) {
+  geometry::OrientationOptions orientation;
+  orientation.largest_relative_gap = geometry::OrientationOptions::file_gap;
+  std::map<std::string, PatchOrigin> origins;
+  for (std::size_t i = 0; i < solid.patches.size(); ++i) {
+    PatchOrigin& origin = facts.patches[i];
+    orientation.shared_edges.push_back(origin.edges);
+    // Loops that are cut have other curves.
+    origin.edges.clear();
+    origins.emplace(solid.patches[i].name, std::move(origin));
+  }
+  geometry::Boundary<3> left = clipped(solid, keys.clip, keys.where, orientation);
+  facts.patches.clear();
+  for (const geometry::Patch<3>& patch : left.patches) {
+    const auto found = origins.find(patch.name);
+    facts.patches.push_back(found == origins.end() ? PatchOrigin{} : found->second);
+  }
+  return left;
+}
+
+/// Moved, cut and named.
+template <int Dim>
+geometry::Boundary<Dim> finished_file(geometry::Boundary<Dim> boundary, const FileKeys& keys, CadFacts& facts) {
+  if (keys.clip.items.empty()) return finished<Dim>(std::move(boundary), keys);
+  if constexpr (Dim == 2) {
+    refuse(keys.where, "found \"clip\"; a shape of the plane cannot be clipped");
+  } else {
+    ShapeKeys moving;
+    moving.transform = keys.transform;
+    ShapeKeys naming;
+    naming.name = keys.name;
+    return finished<3>(clipped_file(finished<3>(std::move(boundary), moving), keys, facts), naming);
+  }
+}
+
 }  // namespace
 
 FileShape build_file_shape(const FileKeys& keys, const FileShapeOptions& options) {
   AssembledModel assembled = load_located(keys, options);
   AnyBoundary boundary = std::visit(
       [&]<int Dim>(geometry::Boundary<Dim>& patches) -> AnyBoundary {
-        return BuiltBoundary<Dim>{located(keys.where, [&] { return finished<Dim>(std::move(patches), keys); }), {}};
+        return BuiltBoundary<Dim>{
+            located(keys.where, [&] { return finished_file<Dim>(std::move(patches), keys, assembled.facts); }), {}};
       },
       assembled.boundary);
   return {std::move(boundary), std::move(assembled.facts)};

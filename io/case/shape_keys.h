@@ -274,7 +274,7 @@ struct NurbsKeys : SolidKeys {
 };
 
 /// The boundary that a CAD file holds.
-struct FileKeys : ShapeKeys {
+struct FileKeys : SolidKeys {
   std::string path;
   /// Empty: the file's own.
   std::string units;
