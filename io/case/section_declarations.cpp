@@ -139,7 +139,8 @@ template <>
 const Schema<OutputKeys>& schema<OutputKeys>() {
   static const auto declared =
       Schema<OutputKeys>("output", "What is written besides results.json.")
-          .key("vtk", &OutputKeys::vtk, {.text = "boundary.vtu: exact rational Bézier cells for ParaView."})
+          .key("vtk", &OutputKeys::vtk,
+               {.text = "boundary.vtu and edges.vtu: exact rational Bézier cells for ParaView."})
           .key("hdf5", &OutputKeys::hdf5, {.text = "results.h5: the results and the Bézier elements."})
           .key("svg", &OutputKeys::svg, {.text = "boundary.svg: a picture of a region of the plane."});
   return declared;

@@ -31,6 +31,7 @@ void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io
   make_folder(folder);
   const io::OutputKeys& output = file.keys.output;
   if (output.vtk) io::write_boundary_vtu(folder / "boundary.vtu", model);
+  if (output.vtk && io::has_edges(model)) io::write_edges_vtu(folder / "edges.vtu", model);
   if (output.svg) io::write_boundary_svg(folder / "boundary.svg", report.title, model);
   if (file.keys.convergence) {
     io::write_convergence_csv(folder / "convergence.csv", study);

@@ -1,5 +1,6 @@
 #include "io/results/pictures.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <variant>
 #include <vector>
@@ -10,13 +11,44 @@
 
 namespace isorim::io {
 
+namespace {
+
+/// What a CAD file tells of the looks of its faces, element by element; empty where it tells nothing.
+struct Looks {
+  std::vector<double> colours;
+  std::vector<double> levels;
+};
+
+template <int Dim>
+Looks looks_of(const Model<Dim>& model) {
+  constexpr Colour grey{0.8, 0.8, 0.8};
+  const auto has_colour = [](const PatchOrigin& patch) { return patch.origin.colour.has_value(); };
+  const auto has_level = [](const PatchOrigin& patch) { return patch.origin.level != 0; };
+  const bool colours = std::ranges::any_of(model.origins, has_colour);
+  const bool levels = std::ranges::any_of(model.origins, has_level);
+  Looks looks;
+  for (const auto& element : model.table.elements) {
+    if (!colours && !levels) break;
+    const CadOrigin& origin = model.origins[static_cast<std::size_t>(element.patch)].origin;
+    const Colour colour = origin.colour.value_or(grey);
+    if (colours) looks.colours.insert(looks.colours.end(), colour.begin(), colour.end());
+    if (levels) looks.levels.push_back(origin.level);
+  }
+  return looks;
+}
+
+}  // namespace
+
 void write_boundary_vtu(const std::filesystem::path& path, const AnyModel& model) {
   std::visit(
       [&](const auto& known) {
         std::vector<std::string> names;
         for (const auto& patch : known.oriented.boundary.patches) names.push_back(patch.name);
+        const Looks looks = looks_of(known);
         VtuContent content;
         content.patch_names = names;
+        if (!looks.colours.empty()) content.cell_fields.push_back({"colour", 3, looks.colours});
+        if (!looks.levels.empty()) content.cell_fields.push_back({"level", 1, looks.levels});
         write_vtu(path, known.table, content);
       },
       model);
@@ -34,20 +66,91 @@ bool has_free_edges(const AnyModel& model) {
   return solid && !solid->oriented.topology.free_edges.empty();
 }
 
-void write_free_edges_vtu(const std::filesystem::path& path, const AnyModel& model) {
-  const auto& solid = std::get<Model<3>>(model);
-  const double tolerance = 1e-6 * geometry::bounding_box(solid.table).diagonal();
+bool has_edges(const AnyModel& model) {
+  const auto* solid = std::get_if<Model<3>>(&model);
+  return solid && !(solid->oriented.topology.edges.empty() && solid->oriented.topology.free_edges.empty());
+}
+
+namespace {
+
+/// A stretch of a curve of a patch's loop, in space.
+struct Stretch {
+  int patch = 0;
+  int loop = 0;
+  int curve = 0;
+  geometry::Interval domain;
+};
+
+/// Lifts stretches; the loops of a patch are made once while they follow one another.
+class EdgeLifter {
+ public:
+  explicit EdgeLifter(const Model<3>& model)
+      : boundary_(model.oriented.boundary), tolerance_(1e-6 * geometry::bounding_box(model.table).diagonal()) {}
+
+  geometry::NurbsCurve<3> lift(const Stretch& stretch) {
+    const geometry::Patch<3>& patch = boundary_.patches[static_cast<std::size_t>(stretch.patch)];
+    if (stretch.patch != current_) {
+      loops_ = geometry::trim_loops(patch.shape);
+      current_ = stretch.patch;
+    }
+    const geometry::NurbsCurve<2>& pcurve =
+        loops_[static_cast<std::size_t>(stretch.loop)].curves[static_cast<std::size_t>(stretch.curve)];
+    return geometry::lift(geometry::surface_of(patch.shape), geometry::restrict_to(pcurve, stretch.domain), tolerance_);
+  }
+
+ private:
+  const geometry::Boundary<3>& boundary_;
+  double tolerance_;
+  int current_ = -1;
+  std::vector<geometry::TrimLoop> loops_;
+};
+
+/// Curves of a file and what is said about each.
+struct EdgeCurves {
   std::vector<geometry::NurbsCurve<3>> curves;
   std::vector<std::string> names;
-  for (const geometry::FreeEdge<3>& edge : solid.oriented.topology.free_edges) {
-    const geometry::Patch<3>& patch = solid.oriented.boundary.patches[static_cast<std::size_t>(edge.patch)];
-    const geometry::TrimLoop loop = geometry::trim_loops(patch.shape)[static_cast<std::size_t>(edge.loop)];
-    const geometry::NurbsCurve<2>& pcurve = loop.curves[static_cast<std::size_t>(edge.curve)];
-    curves.push_back(
-        geometry::lift(geometry::surface_of(patch.shape), geometry::restrict_to(pcurve, edge.domain), tolerance));
-    names.push_back(patch.name);
+  std::vector<double> free;
+  std::vector<double> gaps;
+
+  void write(const std::filesystem::path& path) const {
+    const std::vector<VtuField> fields{{"free", 1, free}, {"gap", 1, gaps}};
+    write_curves_vtu<3>(path, curves, names, fields);
   }
-  write_curves_vtu<3>(path, curves, names);
+};
+
+void append_free_edges(const Model<3>& model, EdgeCurves& edges) {
+  EdgeLifter lifter(model);
+  for (const geometry::FreeEdge<3>& edge : model.oriented.topology.free_edges) {
+    edges.curves.push_back(lifter.lift({edge.patch, edge.loop, edge.curve, edge.domain}));
+    edges.names.push_back(model.oriented.boundary.patches[static_cast<std::size_t>(edge.patch)].name);
+    edges.free.push_back(1.0);
+    edges.gaps.push_back(edge.nearest < 0 ? -1.0 : edge.gap);
+  }
+}
+
+}  // namespace
+
+void write_edges_vtu(const std::filesystem::path& path, const AnyModel& model) {
+  const auto& solid = std::get<Model<3>>(model);
+  const auto& patches = solid.oriented.boundary.patches;
+  EdgeLifter lifter(solid);
+  EdgeCurves edges;
+  for (const geometry::BoundaryEdge& edge : solid.oriented.topology.edges) {
+    const geometry::EdgeUse& use = edge.first;
+    edges.curves.push_back(lifter.lift({use.patch, use.loop, use.curve, use.domain}));
+    edges.names.push_back(patches[static_cast<std::size_t>(use.patch)].name + ", " +
+                          patches[static_cast<std::size_t>(edge.second.patch)].name);
+    edges.free.push_back(0.0);
+    edges.gaps.push_back(edge.gap);
+  }
+  append_free_edges(solid, edges);
+  edges.write(path);
+}
+
+void write_free_edges_vtu(const std::filesystem::path& path, const AnyModel& model) {
+  EdgeCurves edges;
+  append_free_edges(std::get<Model<3>>(model), edges);
+  edges.write(path);
 }
 
 }  // namespace isorim::io

@@ -7,7 +7,9 @@
 
 namespace isorim::io {
 
-/// The oriented boundary as exact rational Bézier cells; see io/vtk/bezier_writer.h.
+/// The oriented boundary as exact rational Bézier cells, triangles where faces are trimmed; see io/vtk/bezier_writer.h.
+/// If it comes from a CAD file that tells colours or levels, these are cell data `colour` (red, green, blue in [0, 1];
+/// grey where the file tells none) and `level`.
 void write_boundary_vtu(const std::filesystem::path& path, const AnyModel& model);
 
 /// A picture of a region of the plane; nothing for a solid.
@@ -16,7 +18,15 @@ void write_boundary_svg(const std::filesystem::path& path, const std::string& ti
 /// Whether a solid's boundary has edges that nothing continues.
 bool has_free_edges(const AnyModel& model);
 
-/// These edges as rational Bézier curves, exact or within a millionth of the boundary's size; a solid's alone.
+/// Whether a solid's boundary has edges at all (one closed patch without seams has none).
+bool has_edges(const AnyModel& model);
+
+/// All edges of a solid's boundary as rational Bézier curves, exact or within a millionth of the boundary's size. Cell
+/// data: `free`, 1 where no other patch continues the edge; `gap`, the largest distance between the two patches there,
+/// or from a free edge to the next one (-1 if there is none).
+void write_edges_vtu(const std::filesystem::path& path, const AnyModel& model);
+
+/// The free edges alone as rational Bézier curves, exact or within a millionth of the boundary's size; a solid's alone.
 void write_free_edges_vtu(const std::filesystem::path& path, const AnyModel& model);
 
 }  // namespace isorim::io

@@ -102,6 +102,8 @@ class GridBuilder {
   /// vertices of triangles.
   void add_point_field(const VtuField& field);
   void add_cell_field(const VtuField& field);
+  /// One value a curve.
+  void add_curve_field(const VtuField& field, std::size_t curves);
   void add_patch_names(std::span<const std::string> names);
   vtkUnstructuredGrid* finish();
 
@@ -117,6 +119,8 @@ class GridBuilder {
   const std::vector<int>& point_order(const CellSource& cell);
   void add_point(const double* point, double weight);
   void add_cell(int type, const std::array<int, 2>& degree, const CellSource& source);
+  /// `owner` tells for each cell whose value it has.
+  void add_field_of(const VtuField& field, vtkIntArray* owner);
   template <class IndexArray>
   void set_cells();
   void claim_name(const std::string& name, std::set<std::string>& taken);
@@ -259,12 +263,21 @@ void GridBuilder::add_point_field(const VtuField& field) {
 }
 
 void GridBuilder::add_cell_field(const VtuField& field) {
-  claim_name(field.name, cell_names_);
   require_size(field, static_cast<std::int64_t>(runs_.size()), "elements");
+  add_field_of(field, element_);
+}
+
+void GridBuilder::add_curve_field(const VtuField& field, std::size_t curves) {
+  require_size(field, static_cast<std::int64_t>(curves), "curves");
+  add_field_of(field, patch_);
+}
+
+void GridBuilder::add_field_of(const VtuField& field, vtkIntArray* owner) {
+  claim_name(field.name, cell_names_);
   vtkNew<vtkDoubleArray> array;
   name_array(array, field.name.c_str(), field.components);
-  for (vtkIdType cell = 0; cell < element_->GetNumberOfTuples(); ++cell) {
-    array->InsertNextTypedTuple(field.values.data() + std::int64_t{element_->GetValue(cell)} * field.components);
+  for (vtkIdType cell = 0; cell < owner->GetNumberOfTuples(); ++cell) {
+    array->InsertNextTypedTuple(field.values.data() + std::int64_t{owner->GetValue(cell)} * field.components);
   }
   grid_->GetCellData()->AddArray(array);
 }
@@ -383,7 +396,7 @@ void write_vtu(const std::filesystem::path& path, const geometry::ElementTable<D
 
 template <int Dim>
 void write_curves_vtu(const std::filesystem::path& path, std::span<const geometry::NurbsCurve<Dim>> curves,
-                      std::span<const std::string> names) {
+                      std::span<const std::string> names, std::span<const VtuField> fields) {
   GridBuilder builder;
   // The builder keeps pointers to the nets.
   std::vector<std::vector<geometry::BezierSegment>> segments;
@@ -398,16 +411,21 @@ void write_curves_vtu(const std::filesystem::path& path, std::span<const geometr
                    .element = static_cast<int>(k)});
     }
   }
-  VtuContent content;
-  content.patch_names = names;
-  add_content_and_write(path, builder, content);
+  try {
+    for (const VtuField& field : fields) builder.add_curve_field(field, curves.size());
+  } catch (Error& error) {
+    error.add_context(path.string());
+    throw;
+  }
+  builder.add_patch_names(names);
+  write_grid(path, builder.finish());
 }
 
 template void write_vtu(const std::filesystem::path&, const geometry::ElementTable<2>&, const VtuContent&);
 template void write_vtu(const std::filesystem::path&, const geometry::ElementTable<3>&, const VtuContent&);
 template void write_curves_vtu(const std::filesystem::path&, std::span<const geometry::NurbsCurve<2>>,
-                               std::span<const std::string>);
+                               std::span<const std::string>, std::span<const VtuField>);
 template void write_curves_vtu(const std::filesystem::path&, std::span<const geometry::NurbsCurve<3>>,
-                               std::span<const std::string>);
+                               std::span<const std::string>, std::span<const VtuField>);
 
 }  // namespace isorim::io

@@ -55,9 +55,10 @@ void write_vtu(const std::filesystem::path& path, const geometry::ElementTable<D
                const VtuContent& content = {});
 
 /// Writes curves alone, for example edges or free edges: one cell a Bézier segment, `patch` being the index of the
-/// curve and `element` that of the segment within it. `names`: one a curve, or none. Errors as for write_vtu.
+/// curve and `element` that of the segment within it. `names`: one a curve, or none; `fields`: components x number of
+/// curves, for all cells of each. Errors as for write_vtu.
 template <int Dim>
 void write_curves_vtu(const std::filesystem::path& path, std::span<const geometry::NurbsCurve<Dim>> curves,
-                      std::span<const std::string> names = {});
+                      std::span<const std::string> names = {}, std::span<const VtuField> fields = {});
 
 }  // namespace isorim::io

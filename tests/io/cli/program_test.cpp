@@ -302,7 +302,8 @@ TEST_F(Program, HelpAndVersion) {
   const ProgramResult version = run({"--version"});
   EXPECT_EQ(version.status, 0);
   EXPECT_THAT(version.out, ::testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+\n"));
-  EXPECT_THAT(run({"help"}).out, AllOf(HasSubstr("verify"), HasSubstr("Exit status"), HasSubstr("convert"), Not(HasSubstr("sweep"))));
+  EXPECT_THAT(run({"help"}).out,
+              AllOf(HasSubstr("verify"), HasSubstr("Exit status"), HasSubstr("convert"), Not(HasSubstr("sweep"))));
   EXPECT_THAT(run({"help", "run"}).out, HasSubstr("--set"));
   EXPECT_THAT(run({"help", "case"}).out,
               AllOf(HasSubstr("properties"), HasSubstr("ellipsoid"), Not(HasSubstr("propeller"))));
