@@ -375,8 +375,11 @@ class MeshRefiner {
   const std::vector<Point3>& points() const { return points_; }
 
  private:
-  /// The triangles on either side; -1 at the region's edge.
+  /// The triangles on either side; for the second `border` at the region's edge, `crowded` where there are more than
+  /// two, as loops that overlap may leave them.
   using EdgeMap = std::map<Edge, std::array<int, 2>>;
+  static constexpr int border = -1;
+  static constexpr int crowded = -2;
 
   EdgeMap edges() const {
     EdgeMap map;
@@ -384,8 +387,8 @@ class MeshRefiner {
       for (std::size_t k = 0; k < 3; ++k) {
         const Triangle& t = mesh_.triangles[i];
         const auto [place, is_new] =
-            map.try_emplace(edge_of(t[k], t[(k + 1) % 3]), std::array<int, 2>{static_cast<int>(i), -1});
-        if (!is_new) place->second[1] = static_cast<int>(i);
+            map.try_emplace(edge_of(t[k], t[(k + 1) % 3]), std::array<int, 2>{static_cast<int>(i), border});
+        if (!is_new) place->second[1] = place->second[1] == border ? static_cast<int>(i) : crowded;
       }
     }
     return map;
@@ -409,24 +412,27 @@ class MeshRefiner {
 
   /// Flips until the angles against each edge add up to at most half a turn: none grows thinner than it has to be.
   void flip_edges() {
-    const std::size_t most = 10 * mesh_.triangles.size() + 100;
-    std::size_t flips = 0;
-    for (bool changed = true; changed && flips < most;) {
-      changed = false;
-      std::vector<bool> touched(mesh_.triangles.size(), false);
-      for (const auto& [edge, sides] : edges()) {
-        if (sides[1] < 0 || touched[std::size_t(sides[0])] || touched[std::size_t(sides[1])]) continue;
-        if (!flip(edge, sides)) continue;
-        touched[std::size_t(sides[0])] = touched[std::size_t(sides[1])] = true;
-        changed = true;
-        ++flips;
-      }
+    EdgeMap sides_of = edges();
+    std::vector<Edge> waiting;
+    for (const auto& [edge, sides] : sides_of)
+      if (sides[1] >= 0) waiting.push_back(edge);
+    // Rounding could make edges of four points on one circle flip for ever.
+    std::size_t flips_left = 10 * mesh_.triangles.size() + 100;
+    while (!waiting.empty() && flips_left > 0) {
+      const Edge edge = waiting.back();
+      waiting.pop_back();
+      const auto place = sides_of.find(edge);
+      if (place == sides_of.end() || !flip(place, sides_of, waiting)) continue;
+      --flips_left;
     }
   }
 
-  bool flip(const Edge& edge, const std::array<int, 2>& sides) {
-    Triangle& first = mesh_.triangles[std::size_t(sides[0])];
-    Triangle& second = mesh_.triangles[std::size_t(sides[1])];
+  /// Flips an edge with two sides if that is better and possible, and lets the edges around it wait for their turn.
+  bool flip(EdgeMap::iterator place, EdgeMap& sides_of, std::vector<Edge>& waiting) {
+    const Edge edge = place->first;
+    const auto [one, other] = place->second;
+    Triangle& first = mesh_.triangles[std::size_t(one)];
+    Triangle& second = mesh_.triangles[std::size_t(other)];
     const int a = opposite(first, edge);
     const int b = opposite(second, edge);
     // cos(alpha) + cos(beta) < 0 exactly if alpha + beta is more than half a turn.
@@ -439,8 +445,14 @@ class MeshRefiner {
     const Triangle new_second{a, b, q};
     const double least = 1e-3 * std::min(mesh_.doubled_area_of(first), mesh_.doubled_area_of(second));
     if (mesh_.doubled_area_of(new_first) <= least || mesh_.doubled_area_of(new_second) <= least) return false;
+    if (!sides_of.try_emplace(edge_of(a, b), place->second).second) return false;
+    sides_of.erase(place);
     first = new_first;
     second = new_second;
+    std::ranges::replace(sides_of.at(edge_of(p, b)), other, one);
+    std::ranges::replace(sides_of.at(edge_of(q, a)), one, other);
+    for (const Edge& around : {edge_of(a, p), edge_of(p, b), edge_of(b, q), edge_of(q, a)})
+      if (sides_of.at(around)[1] >= 0) waiting.push_back(around);
     return true;
   }
 
@@ -475,7 +487,7 @@ class MeshRefiner {
     const EdgeMap map = edges();
     std::set<Edge> marked;
     for (const auto& [edge, sides] : map)
-      if (sides[1] >= 0 && is_far(edge)) marked.insert(edge);
+      if (sides[1] != border && is_far(edge)) marked.insert(edge);
     for (const Triangle& t : mesh_.triangles) {
       if (!is_middle_far(t)) continue;
       std::optional<Edge> longest;
@@ -483,7 +495,7 @@ class MeshRefiner {
       for (std::size_t k = 0; k < 3; ++k) {
         const Edge edge = edge_of(t[k], t[(k + 1) % 3]);
         const double own = (points_[std::size_t(edge.first)] - points_[std::size_t(edge.second)]).norm();
-        if (map.at(edge)[1] < 0 || own <= length) continue;
+        if (map.at(edge)[1] == border || own <= length) continue;
         longest = edge;
         length = own;
       }

@@ -136,6 +136,41 @@ TEST(RegionTriangles, FlatOnesStayFew) {
   EXPECT_NEAR(area(mesh), 0.75, 1e-15);
 }
 
+/// Among all triangulations Delaunay's has the roundest triangles: the angles against each inner edge add up to at most
+/// half a turn. Returns the number of inner edges.
+int expect_delaunay(const RegionTriangles& mesh) {
+  std::map<std::pair<int, int>, double> angles;
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Point2 apex = mesh.parameters.col(t[(k + 2) % 3]);
+      const Point2 a = mesh.parameters.col(t[k]) - apex, b = mesh.parameters.col(t[(k + 1) % 3]) - apex;
+      angles[{t[k], t[(k + 1) % 3]}] = std::acos(a.dot(b) / (a.norm() * b.norm()));
+    }
+  }
+  int inner = 0;
+  for (const auto& [edge, angle] : angles) {
+    const auto other = angles.find({edge.second, edge.first});
+    if (other == angles.end() || edge.first > edge.second) continue;
+    ++inner;
+    EXPECT_LT(angle + other->second, pi + 1e-6) << edge.first << " to " << edge.second;
+  }
+  return inner;
+}
+
+TEST(RegionTriangles, FlatOnesAreDelaunay) {
+  TrimmedRegion region;
+  append_square(region);
+  append_circle(region, {0.3, 0.35}, 0.2, true);
+  append_circle(region, {0.72, 0.6}, 0.13, true);
+  const ElementTable<3> table = cut(geometry::box({1, 1, 1}), region);
+  const RegionTriangles mesh = triangulate_region(table, table.elements[0], 1e-5);
+  const int border = expect_conforming(mesh);
+  // No vertex lies inside: each is an end of two border edges.
+  EXPECT_EQ(border, static_cast<int>(mesh.points.cols()));
+  EXPECT_GT(border, 300);
+  EXPECT_EQ(expect_delaunay(mesh), (3 * static_cast<int>(mesh.triangles.size()) - border) / 2);
+}
+
 // What ear clipping may stumble over.
 TEST(RegionTriangles, LoopsThatTouch) {
   TrimmedRegion corner_to_corner;
