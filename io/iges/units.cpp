@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "io/cad/units.h"
 #include "io/iges/free_format.h"
 
 namespace isorim::io::iges {
@@ -10,16 +11,16 @@ namespace {
 
 /// IGES 5.3, section 2.2.4.3.14 and .15.
 constexpr std::array<LengthUnit, 10> length_units{{
-    {1, "in", 25.4, {"IN", "INCH", "INCHES", "\"", "", ""}},
-    {2, "mm", 1.0, {"MM", "MILLIMETER", "MILLIMETRE", "MILLIMETERS", "MILLIMETRES", ""}},
-    {4, "ft", 304.8, {"FT", "FOOT", "FEET", "'", "", ""}},
-    {5, "mi", 1609344.0, {"MI", "MILE", "MILES", "", "", ""}},
-    {6, "m", 1000.0, {"M", "METER", "METRE", "METERS", "METRES", ""}},
-    {7, "km", 1e6, {"KM", "KILOMETER", "KILOMETRE", "KILOMETERS", "KILOMETRES", ""}},
-    {8, "mil", 0.0254, {"MIL", "MILS", "", "", "", ""}},
-    {9, "um", 0.001, {"UM", "MICRON", "MICRONS", "MICROMETER", "MICROMETRE", "MICROMETERS"}},
-    {10, "cm", 10.0, {"CM", "CENTIMETER", "CENTIMETRE", "CENTIMETERS", "CENTIMETRES", ""}},
-    {11, "uin", 2.54e-5, {"UIN", "MICROINCH", "MICROINCHES", "", "", ""}},
+    {1, "in", *unit_in_millimetres("in"), {"IN", "INCH", "INCHES", "\"", "", ""}},
+    {2, "mm", *unit_in_millimetres("mm"), {"MM", "MILLIMETER", "MILLIMETRE", "MILLIMETERS", "MILLIMETRES", ""}},
+    {4, "ft", *unit_in_millimetres("ft"), {"FT", "FOOT", "FEET", "'", "", ""}},
+    {5, "mi", *unit_in_millimetres("mi"), {"MI", "MILE", "MILES", "", "", ""}},
+    {6, "m", *unit_in_millimetres("m"), {"M", "METER", "METRE", "METERS", "METRES", ""}},
+    {7, "km", *unit_in_millimetres("km"), {"KM", "KILOMETER", "KILOMETRE", "KILOMETERS", "KILOMETRES", ""}},
+    {8, "mil", *unit_in_millimetres("mil"), {"MIL", "MILS", "", "", "", ""}},
+    {9, "um", *unit_in_millimetres("um"), {"UM", "MICRON", "MICRONS", "MICROMETER", "MICROMETRE", "MICROMETERS"}},
+    {10, "cm", *unit_in_millimetres("cm"), {"CM", "CENTIMETER", "CENTIMETRE", "CENTIMETERS", "CENTIMETRES", ""}},
+    {11, "uin", *unit_in_millimetres("uin"), {"UIN", "MICROINCH", "MICROINCHES", "", "", ""}},
 }};
 
 }  // namespace

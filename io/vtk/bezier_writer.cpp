@@ -33,6 +33,7 @@
 #include "geometry/errors.h"
 #include "geometry/spline/bspline.h"
 #include "io/atomic_file.h"
+#include "io/vtk/bernstein.h"
 #include "io/vtk/region_triangles.h"
 
 namespace isorim::io {
@@ -78,16 +79,6 @@ std::vector<int> vtk_point_order(const std::array<int, 2>& degree, bool reversed
     for (int i = 1; i < p; ++i) add(i, j);
   }
   return order;
-}
-
-std::vector<double> bernstein(int degree, double t) {
-  std::vector<double> values(static_cast<std::size_t>(degree) + 1, 0.0);
-  values[0] = 1.0;
-  for (std::size_t k = 1; k < values.size(); ++k) {
-    for (std::size_t i = k; i > 0; --i) values[i] = t * values[i - 1] + (1.0 - t) * values[i];
-    values[0] *= 1.0 - t;
-  }
-  return values;
 }
 
 /// A VTK grid, filled element by element: a Bézier cell for a whole element or a curve, triangles for a cut element.
@@ -226,14 +217,13 @@ void require_size(const VtuField& field, std::int64_t tuples, const char* what) 
 /// The field with control values `values` (components a control point) at a place of the unit cell.
 void interpolate(const CellSource& cell, const double* values, int components, const geometry::Point2& place,
                  double* result) {
-  const std::vector<double> in_s = bernstein(cell.degree[0], place.x());
-  const std::vector<double> in_t = bernstein(cell.degree[1], place.y());
+  const Eigen::VectorXd in_s = bernstein(cell.degree[0], place.x());
+  const Eigen::VectorXd in_t = bernstein(cell.degree[1], place.y());
   std::fill_n(result, components, 0.0);
   double sum = 0.0;
   for (int k = 0; k < cell.point_count(); ++k) {
     const int columns = cell.degree[0] + 1;
-    const double weight = cell.net[k * cell.rows + cell.rows - 1] * in_s[static_cast<std::size_t>(k % columns)] *
-                          in_t[static_cast<std::size_t>(k / columns)];
+    const double weight = cell.net[k * cell.rows + cell.rows - 1] * in_s[k % columns] * in_t[k / columns];
     for (int c = 0; c < components; ++c) result[c] += weight * values[k * components + c];
     sum += weight;
   }

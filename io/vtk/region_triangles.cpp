@@ -14,6 +14,8 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 
+#include "io/vtk/bernstein.h"
+
 namespace isorim::io {
 namespace {
 
@@ -22,16 +24,6 @@ using geometry::Point2;
 using geometry::Point3;
 using Triangle = std::array<int, 3>;
 using Edge = std::pair<int, int>;
-
-Eigen::VectorXd bernstein(int degree, double t) {
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(degree + 1);
-  values[0] = 1.0;
-  for (int k = 1; k <= degree; ++k) {
-    for (int i = k; i > 0; --i) values[i] = t * values[i - 1] + (1.0 - t) * values[i];
-    values[0] *= 1.0 - t;
-  }
-  return values;
-}
 
 /// The surface over the unit cell of an element.
 class ElementSurface {
