@@ -2,10 +2,10 @@
 
 #include <functional>
 
-#include <TopoDS_Face.hxx>
-#include <TopoDS_Shape.hxx>
-
 #include "io/cad/cad_model.h"
+
+class TopoDS_Face;
+class TopoDS_Shape;
 
 /// From OpenCASCADE's boundary representation to ours; for the .cpp files of this folder.
 namespace isorim::io::occt {
