@@ -12,17 +12,10 @@
 #include "geometry/errors.h"
 #include "io/case/value.h"
 #include "io/results/compute.h"
+#include "tests/io/cad/real_cases.h"
 
-/// Files by other people's CAD, which are not ours to keep here: the folder is that of the environment variable
-/// ISORIM_REAL_CASES, or ../shared/cases/real beside the source tree. Without it these tests are skipped.
 namespace isorim::io {
 namespace {
-
-std::filesystem::path real_cases() {
-  const char* folder = std::getenv("ISORIM_REAL_CASES");
-  return folder ? std::filesystem::path(folder)
-                : std::filesystem::path(ISORIM_SOURCE_DIR).parent_path() / "shared/cases/real";
-}
 
 /// In millimetres, whatever the file's unit.
 CaseFile read_in_millimetres(const std::string& name) {

@@ -12,6 +12,7 @@
 
 #include "geometry/errors.h"
 #include "geometry/nurbs/surface.h"
+#include "tests/io/cad/real_cases.h"
 #include "tests/io/iges/file_text.h"
 
 namespace isorim::io {
@@ -616,15 +617,8 @@ TEST(IgesReader, CountsBeyondTheRecordAreRefused) {
   EXPECT_THAT(message_of({entity(102, "2000000000,1")}), HasSubstr("102 at D1"));
 }
 
-/// The folder with the files of the two collections, or empty.
-std::filesystem::path collection(const std::string& name) {
-  const char* root = std::getenv("ISORIM_CAD_FILES");
-  return root == nullptr ? std::filesystem::path() : std::filesystem::path(root) / name;
-}
-
 TEST(IgesReader, CurvesInParameterSpaceMeetThoseInSpaceInAllMadeFiles) {
-  const std::filesystem::path folder = collection("iges");
-  if (folder.empty()) GTEST_SKIP() << "ISORIM_CAD_FILES is not set";
+  const std::filesystem::path folder = std::filesystem::path(ISORIM_SOURCE_DIR) / "cases/cad";
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".igs") continue;
@@ -639,8 +633,8 @@ TEST(IgesReader, CurvesInParameterSpaceMeetThoseInSpaceInAllMadeFiles) {
 }
 
 TEST(IgesReader, RealFilesArriveWithAllTheirFaces) {
-  const std::filesystem::path folder = collection("real");
-  if (folder.empty()) GTEST_SKIP() << "ISORIM_CAD_FILES is not set";
+  const std::filesystem::path folder = real_cases();
+  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not there";
   struct Expectation {
     const char* file;
     std::size_t faces;
