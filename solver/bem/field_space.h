@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/bezier/element_table.h"
+#include "geometry/topology/orientation.h"
+#include "geometry/vocabulary.h"
+
+namespace isorim::solver {
+
+/// The functions that live on one element, as rows of Bernstein coefficients.
+template <int Dim>
+struct FieldElement {
+  /// Of the Bernstein basis that the rows refer to; independent of the geometry's degree.
+  std::array<std::int8_t, Dim - 1> degree{};
+  /// The functions are sum_j row_j B_j / w, w the weight function of the element's net as it stands in the table; else
+  /// the Bernstein sums themselves.
+  bool rational = false;
+  /// Its functions are FieldSpace::functions[first], ..., [first + count - 1].
+  std::size_t first = 0;
+  int count = 0;
+  /// Where its rows start in FieldSpace::rows.
+  std::size_t row = 0;
+
+  int bernstein_count() const {
+    int product = 1;
+    for (const std::int8_t p : degree) product *= p + 1;
+    return product;
+  }
+};
+
+/// A point at which the integral equation is required to hold; inside a patch, off its edges and corners.
+template <int Dim>
+struct CollocationPoint {
+  int element = 0;
+  /// In the element's unit cell.
+  geometry::Point<Dim - 1> place;
+  geometry::Point<Dim> position;
+  /// Unit, outward.
+  geometry::Vector<Dim> normal;
+};
+
+/// A space of functions on a boundary and the points that go with them. Continuous inside a patch (as smooth as its
+/// knots say), free to jump across the edges of patches. Unknowns and known data of all equations live here, one
+/// coefficient a function and component.
+template <int Dim>
+struct FieldSpace {
+  /// The elements of the analysis with their geometry: those of the refined patches, exact copies of the shape.
+  geometry::ElementTable<Dim> table;
+  /// One for each element of the table.
+  std::vector<FieldElement<Dim>> elements;
+  std::vector<std::int32_t> functions;
+  /// Function by function of an element: bernstein_count() coefficients each, the first parameter fastest.
+  std::vector<double> rows;
+  /// One for each function, in the same order: point i lies where function i is large, and the matrix of the functions'
+  /// values at the points is well conditioned.
+  std::vector<CollocationPoint<Dim>> points;
+
+  int function_count() const { return static_cast<int>(points.size()); }
+  std::span<const std::int32_t> functions_of(int element) const {
+    const FieldElement<Dim>& field = elements[static_cast<std::size_t>(element)];
+    return {functions.data() + field.first, static_cast<std::size_t>(field.count)};
+  }
+};
+
+/// How the field's space is made from the boundary.
+template <int Dim>
+struct DiscretisationOptions {
+  /// Of the functions, in every direction; absent: that of the geometry, at least 2.
+  std::optional<int> degree;
+  /// Uniform bisections of every knot span.
+  int refine = 0;
+  struct PatchOptions {
+    std::optional<int> degree;
+    std::optional<int> refine;
+  };
+  /// By name of the patch: instead of the above.
+  std::vector<std::pair<std::string, PatchOptions>> patches;
+  /// Which elements may share functions: where the numbers of neighbouring elements of a patch differ (other boundary
+  /// conditions), functions end along the knot line between them. Called with the patch, and a point and the outward
+  /// normal in the middle of an element; empty: all the same.
+  std::function<int(int patch, const geometry::Point<Dim>& point, const geometry::Vector<Dim>& normal)> group;
+};
+
+/// Builds the space. On NURBS patches functions are N_a / W (W the geometry's weight function) if their degree is not
+/// below the geometry's, which puts constants and linear functions of the position into the space; polynomial
+/// B-splines otherwise. Throws InputError for a degree out of range or a patch that does not exist.
+template <int Dim>
+FieldSpace<Dim> field_space(const geometry::OrientedBoundary<Dim>& boundary, const DiscretisationOptions<Dim>& options);
+
+/// Values of the element's functions at a place of its unit cell: elements[element].count numbers.
+template <int Dim>
+void basis_values(const FieldSpace<Dim>& space, int element, const geometry::Point<Dim - 1>& place,
+                  std::span<double> values);
+/// Values and derivatives by the cell's coordinates: row k of the count x Dim result holds (value, d/ds[, d/dt]).
+template <int Dim>
+Eigen::Matrix<double, Eigen::Dynamic, Dim> basis_jets(const FieldSpace<Dim>& space, int element,
+                                                      const geometry::Point<Dim - 1>& place);
+
+}  // namespace isorim::solver

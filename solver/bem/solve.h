@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "solver/bem/field_space.h"
+#include "solver/bem/problem.h"
+
+namespace isorim::solver {
+
+enum class SolveMethod {
+  /// dense up to automatic_limit unknowns, compressed above.
+  automatic,
+  dense,
+  compressed,
+};
+
+struct SolveOptions {
+  SolveMethod method = SolveMethod::automatic;
+  /// Relative: of the compression, of the iterations, and what the quadrature aims at.
+  double tolerance = 1e-10;
+  /// 0: all that OpenMP offers.
+  int threads = 0;
+  int max_iterations = 500;
+  std::function<void(double)> progress;
+};
+
+/// What the solve found. Components are those of the condition's frame turned back to x, y, z.
+template <int Dim>
+struct Solution {
+  /// function_count x components: coefficients of the potential or displacement, and of the flux or traction. Where a
+  /// value is prescribed the coefficients interpolate it at the collocation points (for pictures); integrals use the
+  /// prescribed function itself.
+  Eigen::MatrixXd potential;
+  Eigen::MatrixXd flux;
+
+  std::size_t unknowns = 0;
+  /// "dense" or "compressed".
+  std::string method;
+  /// 0 for a direct solve.
+  int iterations = 0;
+  /// |A x - b| / |b|.
+  double residual = 0.0;
+  /// Bytes of the largest matrix.
+  std::size_t matrix_memory = 0;
+  /// What the user should know: a null space that was fixed, ...
+  std::vector<std::string> messages;
+};
+
+/// Collocation with the constants (rigid translations) removed, see kernels.h. Throws InputError for an ill-posed set
+/// of conditions (loads out of balance where the body can move freely, with the imbalance), NumericalError for a
+/// singular system or iterations that do not converge.
+template <int Dim>
+Solution<Dim> solve(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const SolveOptions& options);
+
+}  // namespace isorim::solver
