@@ -14,6 +14,7 @@ namespace isorim::geometry {
 
 /// One Bézier element of an extracted surface.
 struct ExtractionElement {
+  /// 1 to KnotVector::max_degree.
   std::array<std::int8_t, 2> degree{};
   /// Indices of the functions that live on the element.
   std::vector<std::int32_t> functions;
@@ -27,12 +28,14 @@ struct ExtractionElement {
 /// A surface S = sum w_a N_a P_a / sum w_a N_a by its functions N_a, element by element; valid from construction on.
 ///
 /// Elements meet along their edges, or along parts of them (T-junctions make one edge face several). The natural normal
-/// is S_s x S_t of every element; all elements look to the same side.
+/// is S_s x S_t of every element; all elements look to the same side. (Topology finds out whether they do: see
+/// orient().)
 class ExtractedSurface {
  public:
   /// homogeneous: 4 x n, columns (w x, w y, w z, w). Throws GeometryError, naming element or function, for a weight
-  /// that is not positive, a number that is not finite, an index out of range, a function twice in one element, a row
-  /// of wrong length, a weight function that is not positive on an element, or no elements.
+  /// that is not positive, a number that is not finite, a degree or an index out of range, a function twice in one
+  /// element, a row of wrong length, an empty domain, a Bézier weight (bezier_net) that is not positive or more than
+  /// 1e10 times smaller than another of its element, or no elements.
   ExtractedSurface(HomogeneousPoints<3> homogeneous, std::vector<ExtractionElement> elements);
 
   const HomogeneousPoints<3>& homogeneous() const { return homogeneous_; }
@@ -49,6 +52,9 @@ class ExtractedSurface {
 std::vector<double> partition_defects(const ExtractedSurface& surface);
 
 /// 4 x (p + 1)(q + 1) homogeneous Bézier points Q = (w P, w) C of an element, the first parameter fastest.
+///
+/// Where the weights of all functions on the element are equal, bit for bit, and the functions sum to one but for
+/// rounding, so are the weights of Q: rounding does not make a polynomial element rational.
 HomogeneousPoints<3> bezier_net(const ExtractedSurface& surface, int element);
 
 /// A map with negative determinant turns the natural normal round.
