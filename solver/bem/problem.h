@@ -17,6 +17,9 @@
 
 namespace isorim::solver {
 
+/// What a plane problem of elasticity means across the plane: no strain, or no stress.
+enum class PlaneState { strain, stress };
+
 /// What is solved. Poisson's equation is Laplace's with a load.
 template <int Dim>
 using Equation = std::variant<Laplace<Dim>, Elasticity<Dim>>;
@@ -55,6 +58,8 @@ struct Condition {
 template <int Dim>
 struct Problem {
   Equation<Dim> equation;
+  /// Dim = 2, elasticity: decides on the stress across the plane alone, see Elasticity.
+  PlaneState plane_state = PlaneState::strain;
   /// The domain is what lies outside the boundary, up to infinity, where the solution vanishes (in the plane: is
   /// bounded).
   bool exterior = false;
@@ -62,7 +67,7 @@ struct Problem {
   /// Index into conditions for every element.
   std::vector<std::int32_t> condition_of;
   /// Sources or body forces; their sum acts.
-  std::vector<std::shared_ptr<const DomainLoad<Dim>>> loads;
+  Loads<Dim> loads;
 };
 
 }  // namespace isorim::solver
