@@ -50,9 +50,13 @@ struct CollocationPoint {
   geometry::Vector<Dim> normal;
 };
 
-/// A space of functions on a boundary and the points that go with them. Continuous inside a patch (as smooth as its
-/// knots say), free to jump across the edges of patches. Unknowns and known data of all equations live here, one
-/// coefficient a function and component.
+/// A space of functions on a boundary and the points that go with them. Unknowns and known data of all equations live
+/// here, one coefficient a function and component.
+///
+/// Functions are free to jump across the edges of patches and across creases inside them, where the normal jumps and
+/// fluxes with it. Elsewhere they are as smooth as the geometry's knots say, and C^(p - 1) at the knots of refinements;
+/// where a patch closes on itself with a continuous normal they are continuous across the seam, and at a pole with a
+/// tangent plane they have one value. They sum up to one.
 template <int Dim>
 struct FieldSpace {
   /// The elements of the analysis with their geometry: those of the refined patches, exact copies of the shape.
@@ -76,10 +80,12 @@ struct FieldSpace {
 /// How the field's space is made from the boundary.
 template <int Dim>
 struct DiscretisationOptions {
-  /// Of the functions, in every direction; absent: that of the geometry, at least 2.
+  /// Of the functions, in every direction, 1 to max_degree; absent: that of the geometry in each direction, at least 2.
   std::optional<int> degree;
-  /// Uniform bisections of every knot span.
+  /// Uniform bisections of every knot span, 0 to max_refine.
   int refine = 0;
+  static constexpr int max_degree = 15;
+  static constexpr int max_refine = 12;
   struct PatchOptions {
     std::optional<int> degree;
     std::optional<int> refine;
@@ -92,9 +98,11 @@ struct DiscretisationOptions {
   std::function<int(int patch, const geometry::Point<Dim>& point, const geometry::Vector<Dim>& normal)> group;
 };
 
-/// Builds the space. On NURBS patches functions are N_a / W (W the geometry's weight function) if their degree is not
-/// below the geometry's, which puts constants and linear functions of the position into the space; polynomial
-/// B-splines otherwise. Throws InputError for a degree out of range or a patch that does not exist.
+/// Builds the space. On NURBS patches functions are w_a N_a / W (W = sum w_a N_a the geometry's weight function) if
+/// their degree is not below the geometry's in any direction, which puts constants and linear functions of the position
+/// into the space; polynomial B-splines otherwise. Collocation points are the Gauss points of the splines
+/// (gauss_points() in line_space.h), moved off the edges of elements where they would lie on them. Throws InputError
+/// for a degree or refinement out of range or a patch that does not exist.
 template <int Dim>
 FieldSpace<Dim> field_space(const geometry::OrientedBoundary<Dim>& boundary, const DiscretisationOptions<Dim>& options);
 

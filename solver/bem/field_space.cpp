@@ -1,0 +1,214 @@
+#include "solver/bem/field_space.h"
+
+#include <algorithm>
+#include <iterator>
+#include <type_traits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "geometry/bezier/element_jet.h"
+#include "geometry/errors.h"
+#include "solver/bem/patch_space.h"
+#include "solver/bem/smoothness.h"
+#include "solver/bem/tensor_space.h"
+
+namespace isorim::solver {
+
+using geometry::BezierElement;
+using geometry::Boundary;
+using geometry::ElementTable;
+using geometry::KnotVector;
+using geometry::NurbsCurve;
+using geometry::NurbsSurface;
+using geometry::OrientedBoundary;
+using geometry::Patch;
+using geometry::Point;
+
+namespace {
+
+/// What is asked of one patch; degree absent: the geometry's.
+struct PatchRequest {
+  std::optional<int> degree;
+  int refine = 0;
+
+  int degree_over(const KnotVector& geometry) const { return degree.value_or(std::max(2, geometry.degree())); }
+};
+
+template <int Dim>
+void require_in_range(const PatchRequest& request, const std::string& where) {
+  using Options = DiscretisationOptions<Dim>;
+  if (request.degree && (*request.degree < 1 || *request.degree > Options::max_degree))
+    throw InputError(fmt::format("{}: the degree of the functions is {}; expected 1 to {}", where, *request.degree,
+                                 Options::max_degree));
+  if (request.refine < 0 || request.refine > Options::max_refine)
+    throw InputError(
+        fmt::format("{}: refine is {}; expected 0 to {} bisections", where, request.refine, Options::max_refine));
+}
+
+template <int Dim>
+std::vector<PatchRequest> patch_requests(const Boundary<Dim>& boundary, const DiscretisationOptions<Dim>& options) {
+  const PatchRequest general{options.degree, options.refine};
+  require_in_range<Dim>(general, "discretisation");
+  std::vector<PatchRequest> requests(boundary.patches.size(), general);
+  for (const auto& [name, special] : options.patches) {
+    const auto patch = std::ranges::find(boundary.patches, name, &Patch<Dim>::name);
+    if (patch == boundary.patches.end()) {
+      std::vector<std::string> names;
+      for (const Patch<Dim>& known : boundary.patches) names.push_back(fmt::format("\"{}\"", known.name));
+      throw InputError(
+          fmt::format("discretisation: there is no patch \"{}\"; the patches are {}", name, fmt::join(names, ", ")));
+    }
+    PatchRequest& request = requests[static_cast<std::size_t>(patch - boundary.patches.begin())];
+    if (special.degree) request.degree = special.degree;
+    if (special.refine) request.refine = *special.refine;
+    require_in_range<Dim>(request, fmt::format("discretisation of patch \"{}\"", name));
+  }
+  return requests;
+}
+
+std::vector<double> new_knots(const KnotVector& knots, int levels) {
+  const std::vector<double> old = knots.breakpoints();
+  const std::vector<double> all = bisected(old, levels);
+  std::vector<double> added;
+  std::ranges::set_difference(all, old, std::back_inserter(added));
+  return added;
+}
+
+NurbsCurve<2> refined(const NurbsCurve<2>& curve, int levels) {
+  const NurbsCurve<2> clamped = clamp(curve);
+  return refine_knots(clamped, new_knots(clamped.knots(), levels));
+}
+
+NurbsSurface<3> refined(const NurbsSurface<3>& surface, int levels) {
+  using geometry::Direction;
+  const NurbsSurface<3> clamped = clamp(surface);
+  const NurbsSurface<3> in_u = refine_knots(clamped, Direction::u, new_knots(clamped.knots_u(), levels));
+  return refine_knots(in_u, Direction::v, new_knots(clamped.knots_v(), levels));
+}
+
+geometry::SurfaceShape refined(const geometry::SurfaceShape& shape, int levels) {
+  if (const auto* surface = std::get_if<NurbsSurface<3>>(&shape)) return refined(*surface, levels);
+  throw InputError("fields on trimmed surfaces are not available");
+}
+
+/// The group of every element.
+template <int Dim>
+std::vector<int> element_groups(const ElementTable<Dim>& table, const DiscretisationOptions<Dim>& options) {
+  std::vector<int> groups(table.elements.size(), 0);
+  if (!options.group) return groups;
+  for (std::size_t e = 0; e < groups.size(); ++e) {
+    const BezierElement<Dim>& element = table.elements[e];
+    const auto jet = evaluate_jet<Dim>(table, element, Point<Dim - 1>::Constant(0.5));
+    groups[e] = options.group(element.patch, jet.position, jet.normal());
+  }
+  return groups;
+}
+
+/// The elements of a patch by their groups; `stride` and `count` describe the grid.
+struct GroupGrid {
+  std::span<const int> groups;
+  std::array<std::size_t, 2> count{1, 1};
+
+  int at(int d, std::size_t across, std::size_t along) const {
+    return groups[d == 0 ? across + count[0] * along : along + count[0] * across];
+  }
+  bool differ(int d, std::size_t before, std::size_t after) const {
+    for (std::size_t along = 0; along < count[static_cast<std::size_t>(1 - d)]; ++along)
+      if (at(d, before, along) != at(d, after, along)) return true;
+    return false;
+  }
+};
+
+/// The line's splines: jumps at creases and between groups.
+LineSpace field_line(const KnotVector& geometry, int degree, std::span<const double> breakpoints,
+                     std::span<const double> creases, bool closed, const GroupGrid& groups, int d) {
+  std::vector<double> jumps(creases.begin(), creases.end());
+  const std::size_t strips = breakpoints.size() - 1;
+  for (std::size_t i = 1; i < strips; ++i)
+    if (groups.differ(d, i - 1, i)) jumps.push_back(breakpoints[i]);
+  std::ranges::sort(jumps);
+  const bool periodic = closed && !groups.differ(d, strips - 1, 0);
+  return line_space(field_knots(geometry, degree, breakpoints, jumps), periodic);
+}
+
+PatchSpace<2> patch_space(const NurbsCurve<2>& curve, const PatchRequest& request, std::span<const int> groups,
+                          std::span<const BezierElement<2>> elements) {
+  const NurbsCurve<2> shape = clamp(curve);
+  const PatchSmoothness<2> smooth = smoothness(shape);
+  const std::vector<double> breakpoints = bisected(shape.knots().breakpoints(), request.refine);
+  const GroupGrid grid{groups, {groups.size(), 1}};
+  LineSpace line = field_line(shape.knots(), request.degree_over(shape.knots()), breakpoints, smooth.creases[0],
+                              smooth.closed[0], grid, 0);
+  return patch_space<2>(tensor_space(shape, {std::move(line)}), elements);
+}
+
+PatchSpace<3> patch_space(const NurbsSurface<3>& surface, const PatchRequest& request, std::span<const int> groups,
+                          std::span<const BezierElement<3>> elements) {
+  const NurbsSurface<3> shape = clamp(surface);
+  const PatchSmoothness<3> smooth = smoothness(shape);
+  const std::vector<double> in_u = bisected(shape.knots_u().breakpoints(), request.refine);
+  const std::vector<double> in_v = bisected(shape.knots_v().breakpoints(), request.refine);
+  const GroupGrid grid{groups, {in_u.size() - 1, in_v.size() - 1}};
+  return patch_space<3>(tensor_space(shape,
+                                     {field_line(shape.knots_u(), request.degree_over(shape.knots_u()), in_u,
+                                                 smooth.creases[0], smooth.closed[0], grid, 0),
+                                      field_line(shape.knots_v(), request.degree_over(shape.knots_v()), in_v,
+                                                 smooth.creases[1], smooth.closed[1], grid, 1)},
+                                     smooth),
+                        elements);
+}
+
+PatchSpace<3> patch_space(const geometry::SurfaceShape& shape, const PatchRequest& request, std::span<const int> groups,
+                          std::span<const BezierElement<3>> elements) {
+  return patch_space(std::get<NurbsSurface<3>>(shape), request, groups, elements);
+}
+
+/// Appends a patch whose elements begin at `first_element` of the table.
+template <int Dim>
+void append(FieldSpace<Dim>& space, const PatchSpace<Dim>& patch) {
+  const std::size_t first_element = space.elements.size();
+  const std::int32_t first_function = static_cast<std::int32_t>(space.points.size());
+  for (FieldElement<Dim> element : patch.elements) {
+    element.first += space.functions.size();
+    element.row += space.rows.size();
+    space.elements.push_back(element);
+  }
+  for (const std::int32_t function : patch.functions) space.functions.push_back(first_function + function);
+  space.rows.insert(space.rows.end(), patch.rows.begin(), patch.rows.end());
+  for (const auto& point : patch.points) {
+    const std::size_t element = first_element + static_cast<std::size_t>(point.element);
+    const auto jet = evaluate_jet<Dim>(space.table, space.table.elements[element], point.place);
+    space.points.push_back({static_cast<int>(element), point.place, jet.position, jet.normal()});
+  }
+}
+
+}  // namespace
+
+template <int Dim>
+FieldSpace<Dim> field_space(const OrientedBoundary<Dim>& oriented, const DiscretisationOptions<Dim>& options) {
+  const Boundary<Dim>& boundary = oriented.boundary;
+  const std::vector<PatchRequest> requests = patch_requests(boundary, options);
+  Boundary<Dim> fine = boundary;
+  for (std::size_t i = 0; i < requests.size(); ++i)
+    fine.patches[i].shape = refined(boundary.patches[i].shape, requests[i].refine);
+  FieldSpace<Dim> space;
+  space.table = bezier_elements(fine);
+  const std::vector<int> groups = element_groups(space.table, options);
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    const auto& elements = space.table.elements;
+    std::size_t count = 0;
+    while (first + count < elements.size() && elements[first + count].patch == static_cast<std::int32_t>(i)) ++count;
+    append<Dim>(space, patch_space(boundary.patches[i].shape, requests[i], std::span(groups).subspan(first, count),
+                                   std::span<const BezierElement<Dim>>(elements).subspan(first, count)));
+    first += count;
+  }
+  return space;
+}
+
+template FieldSpace<2> field_space(const OrientedBoundary<2>&, const DiscretisationOptions<2>&);
+template FieldSpace<3> field_space(const OrientedBoundary<3>&, const DiscretisationOptions<3>&);
+
+}  // namespace isorim::solver
