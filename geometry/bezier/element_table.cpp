@@ -179,11 +179,38 @@ void append_kept(ElementTable<3>& table, SurfaceElements&& from, FaceCells&& cel
   }
 }
 
+void append_extracted(ElementTable<3>& table, const ExtractedSurface& surface, std::size_t patch, int orientation) {
+  const std::vector<ExtractionElement>& elements = surface.elements();
+  reserve_more(table, elements.size(), static_cast<std::size_t>(elements.front().rows.cols()));
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    BezierElement<3>& element = append_element(table, patch, orientation);
+    element.degree = elements[e].degree;
+    element.domain = elements[e].domain;
+    HomogeneousPoints<3> net = bezier_net(surface, static_cast<int>(e));
+    element.polynomial = (net.row(3).array() == net(3, 0)).all();
+    if (element.polynomial) divide_out_weight<3>({net.data(), 4, net.cols()}, net(3, 0));
+    table.nets.insert(table.nets.end(), net.data(), net.data() + net.size());
+  }
+}
+
+/// Appends the elements of a patch.
+struct PatchAppender {
+  ElementTable<3>& table;
+  const Patch<3>& patch;
+  std::size_t index = 0;
+
+  void operator()(const NurbsSurface<3>& surface) const {
+    append_whole(table, SurfaceElements{surface, index, patch.orientation});
+  }
+  void operator()(const TrimmedSurface& face) const {
+    append_kept(table, SurfaceElements{face.surface(), index, patch.orientation}, cut_into_cells(face));
+  }
+  void operator()(const ExtractedSurface& surface) const { append_extracted(table, surface, index, patch.orientation); }
+};
+
 void append_patch(ElementTable<3>& table, const Patch<3>& patch, std::size_t index) {
-  const auto* face = std::get_if<TrimmedSurface>(&patch.shape);
-  if (!face) return append_whole(table, SurfaceElements{surface_of(patch.shape), index, patch.orientation});
   try {
-    append_kept(table, SurfaceElements{face->surface(), index, patch.orientation}, cut_into_cells(*face));
+    std::visit(PatchAppender{table, patch, index}, patch.shape);
   } catch (Error& error) {
     error.add_context(fmt::format("patch \"{}\"", patch.name));
     throw;

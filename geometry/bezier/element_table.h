@@ -19,7 +19,8 @@ struct BezierElement {
   /// Where the net starts in ElementTable::nets, in doubles.
   std::size_t offset = 0;
   /// The element's cell in the parameter space of its patch, a knot span or (if cut) a part of one; unit cell
-  /// coordinate s maps to first + s length.
+  /// coordinate s maps to first + s length. Of an extracted surface the cell of its T-mesh, or the unit square for
+  /// every element where none is known.
   std::array<Interval, Dim - 1> domain;
   /// Index of the patch in the boundary.
   std::int32_t patch = 0;
@@ -68,7 +69,8 @@ struct ElementTable {
   }
 };
 
-/// The rational Bézier elements of each patch, in the order of the patches, a surface's elements with u fastest.
+/// The rational Bézier elements of each patch, in the order of the patches, a surface's elements with u fastest, those
+/// of an extracted surface in their own order.
 /// Exact: knots are inserted to full multiplicity.
 ///
 /// Of a trimmed surface only the elements are there that hold some of what is kept. Its cut elements are narrowed to

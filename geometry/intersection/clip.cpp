@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -175,13 +176,30 @@ struct CapMaker {
   }
 };
 
-Boundary<3> clip_once(const Boundary<3>& solid, const ClipTool& tool, const ClipOptions& options) {
+/// Every patch with a surface of its own: the elements of extracted surfaces one by one.
+Boundary<3> with_single_surfaces(const Boundary<3>& solid) {
+  Boundary<3> result;
+  for (const Patch<3>& patch : solid.patches) {
+    const auto* extracted = std::get_if<ExtractedSurface>(&patch.shape);
+    if (!extracted) {
+      result.patches.push_back(patch);
+      continue;
+    }
+    for (int e = 0; e < static_cast<int>(extracted->elements().size()); ++e)
+      result.patches.push_back(
+          {fmt::format("{}[{}]", patch.name, e), bezier_surface(*extracted, e), patch.orientation});
+  }
+  return result;
+}
+
+/// Empty if nothing is cut off.
+std::optional<Boundary<3>> clip_once(const Boundary<3>& solid, const ClipTool& tool, const ClipOptions& options) {
   const Clipper clipper(solid, options);
   OpenPart part = clipper.cut(implicit_surface(tool));
   const auto* ball = std::get_if<SphereTool>(&tool);
-  if (!part.is_reduced && !ball) return solid;
+  if (!part.is_reduced && !ball) return std::nullopt;
   const std::vector<Patch<3>> caps = std::visit(CapMaker{solid, clipper, part.edges, options}, tool);
-  if (!part.is_reduced && caps.empty()) return solid;
+  if (!part.is_reduced && caps.empty()) return std::nullopt;
   append_caps(part.boundary, caps);
   if (part.boundary.patches.empty()) throw GeometryError("clip: nothing is left of the solid");
   return std::move(part.boundary);
@@ -206,14 +224,18 @@ ImplicitSurface implicit_surface(const ClipTool& tool) {
 }
 
 Boundary<3> clip(const Boundary<3>& solid, const ClipTool& tool, const ClipOptions& options) {
+  const Boundary<3> faces = with_single_surfaces(solid);
   const auto* cone = std::get_if<ConeTool>(&tool);
-  if (!cone || cone->keep == KeptSide::outside) return clip_once(solid, tool, options);
+  if (!cone || cone->keep == KeptSide::outside) return clip_once(faces, tool, options).value_or(solid);
   // What lies within the other nappe goes first.
-  return clip_once(clip_once(solid, PlaneTool{cone->apex, -cone->axis}, options), tool, options);
+  const std::optional<Boundary<3>> half = clip_once(faces, PlaneTool{cone->apex, -cone->axis}, options);
+  const std::optional<Boundary<3>> rest = clip_once(half.value_or(faces), tool, options);
+  return rest ? *rest : half.value_or(solid);
 }
 
 PlaneSection section(const Boundary<3>& solid, const PlaneTool& plane, const ClipOptions& options) {
-  const Clipper clipper(solid, options);
+  const Boundary<3> faces = with_single_surfaces(solid);
+  const Clipper clipper(faces, options);
   PlaneSection result = plane_frame(plane, clipper.middle());
   result.loops = plane_loops(result, clipper.cut(implicit_surface(plane)).edges, clipper.size(), options);
   return result;

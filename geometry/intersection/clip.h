@@ -61,8 +61,8 @@ struct ClipOptions {
 /// `solid` is closed and oriented (see orient()). Faces that are not met stay as they are, faces that are cut become
 /// trimmed surfaces of the same name and orientation, along traced curves (ImplicitTrace); what is left is closed by
 /// trimmed parts of the tool named "cap", or "cap_2", ... as long as the name is taken, with normals that point out of
-/// what is left. Faces of the solid that lie on the tool are replaced by caps. A solid of which nothing is cut off
-/// comes back as it is.
+/// what is left. Faces of the solid that lie on the tool are replaced by caps. Extracted surfaces become patches of
+/// their elements, "name[0]", "name[1]", ... A solid of which nothing is cut off comes back as it is.
 ///
 /// Throws GeometryError if nothing is left; if the solid is open where the tool cuts it; if the tool touches a face in
 /// a singular point that is not an ordinary double point; and if a cone whose outside is kept meets the solid with its

@@ -41,11 +41,23 @@ std::string describe(const Patch<2>& /*patch*/, const FreeEdge<2>& edge) {
 }
 
 std::string describe(const Patch<3>& patch, const FreeEdge<3>& edge) {
-  constexpr const char* sides[] = {"first v", "last u", "last v", "first u"};
-  const std::string where = std::holds_alternative<TrimmedSurface>(patch.shape)
-                                ? fmt::format("in curve {} of loop {}", edge.curve + 1, edge.loop + 1)
-                                : fmt::format("at its {}", sides[edge.curve]);
-  return fmt::format("has a free edge ({}) from {} to {}", where, at<3>(edge.from), at<3>(edge.to));
+  struct Place {
+    const FreeEdge<3>& edge;
+
+    std::string operator()(const NurbsSurface<3>&) const {
+      constexpr const char* sides[] = {"first v", "last u", "last v", "first u"};
+      return fmt::format("at its {}", sides[edge.curve]);
+    }
+    std::string operator()(const TrimmedSurface&) const {
+      return fmt::format("in curve {} of loop {}", edge.curve + 1, edge.loop + 1);
+    }
+    std::string operator()(const ExtractedSurface&) const {
+      constexpr const char* sides[] = {"t = 0", "s = 1", "t = 1", "s = 0"};
+      return fmt::format("at {} of element {}", sides[edge.curve], edge.loop);
+    }
+  };
+  return fmt::format("has a free edge ({}) from {} to {}", std::visit(Place{edge}, patch.shape), at<3>(edge.from),
+                     at<3>(edge.to));
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "geometry/topology/edge_fan.h"
 #include "geometry/topology/point_clusters.h"
 #include "geometry/topology/point_tree.h"
+#include "geometry/topology/shape_loops.h"
 #include "geometry/topology/signed_components.h"
 
 namespace isorim::geometry {
@@ -32,7 +33,7 @@ std::size_t slot(int index) {
   return static_cast<std::size_t>(index);
 }
 
-/// An edge with its curve, whose surface belongs to the boundary.
+/// An edge with its curve, whose surface belongs to the loops of its patch.
 struct Edge {
   SurfaceEdge data;
   EdgeCurve curve;
@@ -85,33 +86,30 @@ class Vertices {
   std::vector<std::vector<int>> pieces_;
 };
 
-std::vector<Edge> find_edges(const Boundary<3>& boundary, double tolerance) {
-  std::vector<Edge> edges;
-  for (std::size_t i = 0; i < boundary.patches.size(); ++i) {
-    const std::vector<TrimLoop> loops = trim_loops(boundary.patches[i].shape);
-    for (std::size_t k = 0; k < loops.size(); ++k) {
-      const std::size_t first = edges.size();
-      double loop_length = 0.0;
-      for (std::size_t c = 0; c < loops[k].curves.size(); ++c) {
-        EdgeCurve curve(surface_of(boundary.patches[i].shape), loops[k].curves[c]);
-        if (curve.diagonal() <= tolerance) continue;
-        const double length = curve.length();
-        loop_length += length;
-        edges.push_back(
-            {{static_cast<int>(i), static_cast<int>(k), static_cast<int>(c), length}, std::move(curve), 0.0});
-      }
-      for (std::size_t e = first; e < edges.size(); ++e) edges[e].loop_length = loop_length;
+void append_edges(const ShapeLoops& loops, int patch, double tolerance, std::vector<Edge>& edges) {
+  for (int k = 0; k < static_cast<int>(loops.size()); ++k) {
+    const std::size_t first = edges.size();
+    double loop_length = 0.0;
+    for (int c = 0; c < static_cast<int>(loops.loop(k).curves.size()); ++c) {
+      EdgeCurve curve(loops.surface(k), loops.curve(k, c));
+      if (curve.diagonal() <= tolerance) continue;
+      const double length = curve.length();
+      loop_length += length;
+      edges.push_back({{patch, k, c, length}, std::move(curve), 0.0});
     }
+    for (std::size_t e = first; e < edges.size(); ++e) edges[e].loop_length = loop_length;
   }
-  return edges;
 }
 
 /// The matching in levels of a growing distance.
 class Matcher {
  public:
   Matcher(const Boundary<3>& boundary, const MatchingOptions& options)
-      : boundary_(boundary), options_(options), finest_(finest_tolerance(boundary, options.tolerance)) {
-    edges_ = find_edges(boundary, finest_);
+      : boundary_(boundary),
+        options_(options),
+        loops_(shape_loops(boundary)),
+        finest_(finest_tolerance(loops_, options.tolerance)) {
+    for (std::size_t i = 0; i < loops_.size(); ++i) append_edges(loops_[i], static_cast<int>(i), finest_, edges_);
   }
 
   EdgeMatching run() {
@@ -134,13 +132,11 @@ class Matcher {
   }
 
  private:
-  static double finest_tolerance(const Boundary<3>& boundary, double tolerance) {
+  static double finest_tolerance(const std::vector<ShapeLoops>& patches, double tolerance) {
     double farthest = 0.0;
-    for (const Patch<3>& patch : boundary.patches) {
-      const HomogeneousPoints<3>& net = surface_of(patch.shape).homogeneous();
-      for (Eigen::Index i = 0; i < net.cols(); ++i)
-        farthest = std::max(farthest, net.col(i).head<3>().cwiseAbs().maxCoeff() / net(3, i));
-    }
+    for (const ShapeLoops& loops : patches)
+      for (const NurbsSurface<3>* surface : loops.surfaces())
+        farthest = std::max(farthest, surface->control_points().cwiseAbs().maxCoeff());
     const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * farthest;
     return std::min(tolerance, std::max(1e-3 * tolerance, rounding));
   }
@@ -149,7 +145,14 @@ class Matcher {
 
   const Edge& edge_of(const Piece& piece) const { return edges_[slot(piece.data.edge)]; }
   int patch_of(int piece) const { return edge_of(pieces_[slot(piece)]).data.patch; }
-  const std::string& patch_name(int piece) const { return boundary_.patches[slot(patch_of(piece))].name; }
+  /// Its patch, or its element if the patch is an extracted surface.
+  Patch<3> face_of(int piece) const {
+    const SurfaceEdge& edge = edge_of(pieces_[slot(piece)]).data;
+    const Patch<3>& patch = boundary_.patches[slot(edge.patch)];
+    const auto* extracted = std::get_if<ExtractedSurface>(&patch.shape);
+    if (!extracted) return {fmt::format("'{}'", patch.name), patch.shape};
+    return {fmt::format("'{}' (element {})", patch.name, edge.loop), bezier_surface(*extracted, edge.loop)};
+  }
   int from(const Piece& piece) const { return vertices_.root(piece.data.from); }
   int to(const Piece& piece) const { return vertices_.root(piece.data.to); }
 
@@ -570,17 +573,18 @@ class Matcher {
   }
 
   [[noreturn]] void refuse(const std::vector<int>& fan) const {
+    std::vector<Patch<3>> faces;
+    for (const int piece : fan) faces.push_back(face_of(piece));
     for (std::size_t i = 0; i < fan.size(); ++i) {
       for (std::size_t k = i + 1; k < fan.size(); ++k) {
-        const Patch<3>& a = boundary_.patches[slot(patch_of(fan[i]))];
-        const Patch<3>& b = boundary_.patches[slot(patch_of(fan[k]))];
-        if (&a != &b && is_same_face(a, b, options_.tolerance))
-          throw GeometryError(fmt::format("patches '{}' and '{}' are the same face, given twice", a.name, b.name));
+        if (faces[i].name != faces[k].name && is_same_face(faces[i], faces[k], options_.tolerance))
+          throw GeometryError(
+              fmt::format("patches {} and {} are the same face, given twice", faces[i].name, faces[k].name));
       }
     }
     std::vector<std::string> names;
     for (std::size_t i = 0; i < fan.size(); ++i)
-      names.push_back(fmt::format("{}'{}'", i == 0 ? "" : i + 1 == fan.size() ? " and " : ", ", patch_name(fan[i])));
+      names.push_back(fmt::format("{}{}", i == 0 ? "" : i + 1 == fan.size() ? " and " : ", ", faces[i].name));
     std::string list;
     for (const std::string& name : names) list += name;
     const Piece& piece = pieces_[slot(fan.front())];
@@ -623,6 +627,7 @@ class Matcher {
 
   const Boundary<3>& boundary_;
   const MatchingOptions& options_;
+  std::vector<ShapeLoops> loops_;
   double finest_;
   /// Of the present level.
   double tolerance_ = 0.0;

@@ -9,7 +9,7 @@
 /// Which stretches of which edges of surfaces coincide in space.
 namespace isorim::geometry {
 
-/// A curve of a loop of a patch (indices into trim_loops() and TrimLoop::curves) that is not degenerate in space.
+/// A curve of a loop of a patch (indices into its ShapeLoops and TrimLoop::curves) that is not degenerate in space.
 struct SurfaceEdge {
   int patch = 0;
   int loop = 0;

@@ -8,6 +8,7 @@
 
 #include "geometry/topology/edge_curve.h"
 #include "geometry/topology/point_tree.h"
+#include "geometry/topology/shape_loops.h"
 
 namespace isorim::geometry {
 namespace {
@@ -32,11 +33,9 @@ struct Stretch {
   EdgeCurve curve;
 };
 
-std::vector<Stretch> stretches(const Boundary<3>& boundary, const EdgeMatching& matching) {
+std::vector<Stretch> stretches(const std::vector<ShapeLoops>& patches, const EdgeMatching& matching) {
   std::vector<Stretch> result;
   int last_edge = -1;
-  int last_patch = -1;
-  std::vector<TrimLoop> loops;
   for (const int index : in_order(matching)) {
     const EdgePiece& piece = matching.pieces[static_cast<std::size_t>(index)];
     if (piece.edge == last_edge && result.back().edge.domain.last == piece.domain.first) {
@@ -45,16 +44,13 @@ std::vector<Stretch> stretches(const Boundary<3>& boundary, const EdgeMatching& 
     }
     last_edge = piece.edge;
     const SurfaceEdge& edge = edge_of(matching, index);
-    const SurfaceShape& shape = boundary.patches[static_cast<std::size_t>(edge.patch)].shape;
-    if (edge.patch != last_patch) loops = trim_loops(shape);
-    last_patch = edge.patch;
-    const TrimLoop& loop = loops[static_cast<std::size_t>(edge.loop)];
+    const ShapeLoops& loops = patches[static_cast<std::size_t>(edge.patch)];
     FreeEdge<3> free;
     free.patch = edge.patch;
     free.loop = edge.loop;
     free.curve = edge.curve;
     free.domain = piece.domain;
-    result.push_back({free, EdgeCurve(surface_of(shape), loop.curves[static_cast<std::size_t>(edge.curve)])});
+    result.push_back({free, EdgeCurve(loops.surface(edge.loop), loops.curve(edge.loop, edge.curve))});
   }
   for (Stretch& stretch : result) {
     stretch.edge.from = stretch.curve.at(stretch.edge.domain.first);
@@ -122,9 +118,10 @@ class StretchPoints {
 }  // namespace
 
 std::vector<FreeEdge<3>> free_edges(const Boundary<3>& boundary, const EdgeMatching& matching) {
-  const std::vector<Stretch> all = stretches(boundary, matching);
   std::vector<FreeEdge<3>> result;
-  if (all.empty()) return result;
+  if (matching.free_pieces.empty()) return result;
+  const std::vector<ShapeLoops> loops = shape_loops(boundary);
+  const std::vector<Stretch> all = stretches(loops, matching);
   const StretchPoints points(all);
   for (std::size_t i = 0; i < all.size(); ++i) {
     result.push_back(all[i].edge);

@@ -27,8 +27,8 @@ struct FreeEdge<2> {
 template <>
 struct FreeEdge<3> {
   int patch = 0;
-  /// Indices into trim_loops(shape) and TrimLoop::curves; for a whole surface `curve` is the side, in the order of
-  /// boundary_curves().
+  /// Indices into the patch's ShapeLoops and TrimLoop::curves; for a whole surface `curve` is the side, in the order of
+  /// boundary_curves(), and for an extracted one `loop` is the element.
   int loop = 0;
   int curve = 0;
   /// In the parameter of that pcurve.
@@ -45,7 +45,7 @@ struct FreeEdge<3> {
 /// One side of an edge of a boundary in space: the stretch of a loop that runs along it.
 struct EdgeUse {
   int patch = 0;
-  /// Indices into trim_loops(shape) and TrimLoop::curves.
+  /// Indices into the patch's ShapeLoops and TrimLoop::curves.
   int loop = 0;
   int curve = 0;
   /// In the parameter of that pcurve.
@@ -95,7 +95,7 @@ struct Topology {
   bool closed = false;
 };
 
-/// For each patch, loop and curve of trim_loops() the number of the edge, shared by two curves, that the file names
+/// For each patch, loop and curve of its ShapeLoops the number of the edge, shared by two curves, that the file names
 /// there, or -1; an inner list may be empty.
 using SharedEdges = std::vector<std::vector<std::vector<int>>>;
 
@@ -130,10 +130,11 @@ struct OrientedBoundary {
 /// depth, odd levels are voids. An open shell keeps consistent orientations.
 ///
 /// Throws GeometryError, naming patches and place, for: edges shared by more than two patches, unless these are solids
-/// that touch there (match_edges()); the same face twice; a shell that cannot be oriented (a Moebius strip); a closed
-/// shell without content; a boundary whose coordinates coincidence_tolerance() refuses; for Dim = 2 also loops that
-/// cross themselves or one another (touching is allowed); for Dim = 3 shells that cross one another so far that a few
-/// points of one, spread over it, see it (that is no proof that they do not).
+/// that touch there (match_edges()); the same face twice; a shell that cannot be oriented (a Moebius strip), or an
+/// extracted surface whose elements look to different sides; a closed shell without content; a boundary whose
+/// coordinates coincidence_tolerance() refuses; for Dim = 2 also loops that cross themselves or one another (touching
+/// is allowed); for Dim = 3 shells that cross one another so far that a few points of one, spread over it, see it (that
+/// is no proof that they do not).
 template <int Dim>
 OrientedBoundary<Dim> orient(const Boundary<Dim>& boundary, const OrientationOptions& options = {});
 

@@ -16,6 +16,7 @@
 #include "geometry/topology/enclosed_volume.h"
 #include "geometry/topology/free_edges.h"
 #include "geometry/topology/orientation.h"
+#include "geometry/topology/shape_loops.h"
 #include "geometry/trimming/lifted_curve.h"
 
 namespace isorim::geometry {
@@ -26,9 +27,8 @@ std::string at(const Point3& point) {
 }
 
 Point3 place_on(const Boundary<3>& boundary, const SurfaceEdge& edge, double t) {
-  const SurfaceShape& shape = boundary.patches[static_cast<std::size_t>(edge.patch)].shape;
-  const TrimLoop loop = trim_loops(shape)[static_cast<std::size_t>(edge.loop)];
-  return lifted_point(surface_of(shape), loop.curves[static_cast<std::size_t>(edge.curve)], t);
+  const ShapeLoops loops(boundary.patches[static_cast<std::size_t>(edge.patch)].shape);
+  return lifted_point(loops.surface(edge.loop), loops.curve(edge.loop, edge.curve), t);
 }
 
 /// A neighbour across an edge; relation +1 if both natural normals agree there.
@@ -97,9 +97,17 @@ class ShellFinder {
   }
 
   [[noreturn]] void refuse_one_sided(int patch, const Neighbour& next) const {
-    const int piece = matching_.joints[static_cast<std::size_t>(next.joint)].first;
+    const EdgeJoint& joint = matching_.joints[static_cast<std::size_t>(next.joint)];
+    const int piece = joint.first;
     const Point3 place =
         place_on(boundary_, edge_of(piece), matching_.pieces[static_cast<std::size_t>(piece)].domain.middle());
+    const bool elements =
+        std::holds_alternative<ExtractedSurface>(boundary_.patches[static_cast<std::size_t>(patch)].shape);
+    if (patch == next.patch && elements)
+      throw GeometryError(fmt::format(
+          "elements {} and {} of patch '{}' look to different sides: they run through their common edge at {} the same "
+          "way; expected normals S_s x S_t that agree",
+          edge_of(joint.first).loop, edge_of(joint.second).loop, name(patch), at(place)));
     throw GeometryError(
         patch == next.patch
             ? fmt::format("patch '{}' meets itself at {} with its normal reversed: the shell has one side only "

@@ -10,7 +10,6 @@
 
 #include "geometry/errors.h"
 #include "geometry/nurbs/validation.h"
-#include "geometry/spline/knot_vector.h"
 
 namespace isorim::geometry {
 
@@ -67,7 +66,7 @@ void require_rows(const ExtractionElement& element, const std::string& name) {
 bool sums_to_one(const ExtractionElement& element) {
   const Coefficients sums = element.rows.colwise().sum();
   const double magnitude = element.rows.cwiseAbs().colwise().sum().maxCoeff();
-  const double tolerance = 16.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, magnitude);
+  const double tolerance = partition_rounding * std::max(1.0, magnitude);
   return ((sums.array() - 1.0).abs() <= tolerance).all();
 }
 
@@ -115,6 +114,11 @@ std::vector<double> partition_defects(const ExtractedSurface& surface) {
 
 HomogeneousPoints<3> bezier_net(const ExtractedSurface& surface, int element) {
   return bezier_net_of(surface.homogeneous(), surface.elements()[static_cast<std::size_t>(element)]);
+}
+
+NurbsSurface<3> bezier_surface(const ExtractedSurface& surface, int element) {
+  const std::array<std::int8_t, 2>& degree = surface.elements()[static_cast<std::size_t>(element)].degree;
+  return {KnotVector::bezier(degree[0]), KnotVector::bezier(degree[1]), bezier_net(surface, element)};
 }
 
 ExtractedSurface transform(const ExtractedSurface& surface, const AffineMap<3>& map) {

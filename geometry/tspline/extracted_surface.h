@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "geometry/nurbs/surface.h"
 #include "geometry/vocabulary.h"
 
 /// Surfaces given by Bézier extraction: what a T-spline is once its T-mesh has been worked out, and all that `.iga`,
@@ -28,8 +30,8 @@ struct ExtractionElement {
 /// A surface S = sum w_a N_a P_a / sum w_a N_a by its functions N_a, element by element; valid from construction on.
 ///
 /// Elements meet along their edges, or along parts of them (T-junctions make one edge face several). The natural normal
-/// is S_s x S_t of every element; all elements look to the same side. (Topology finds out whether they do: see
-/// orient().)
+/// is S_s x S_t of every element; all elements look to the same side. (orient() finds out whether
+/// they do.)
 class ExtractedSurface {
  public:
   /// homogeneous: 4 x n, columns (w x, w y, w z, w). Throws GeometryError, naming element or function, for a weight
@@ -47,6 +49,10 @@ class ExtractedSurface {
   std::vector<ExtractionElement> elements_;
 };
 
+/// Sums of functions that differ from one by no more than this many times the magnitude of their coefficients (at least
+/// 1) do so for rounding alone.
+inline constexpr double partition_rounding = 16.0 * std::numeric_limits<double>::epsilon();
+
 /// The largest |sum of the functions - 1| on each element, from the column sums of its rows (a bound that is reached at
 /// corners): zero but for rounding for analysis-suitable T-splines.
 std::vector<double> partition_defects(const ExtractedSurface& surface);
@@ -56,6 +62,9 @@ std::vector<double> partition_defects(const ExtractedSurface& surface);
 /// Where the weights of all functions on the element are equal, bit for bit, and the functions sum to one but for
 /// rounding, so are the weights of Q: rounding does not make a polynomial element rational.
 HomogeneousPoints<3> bezier_net(const ExtractedSurface& surface, int element);
+
+/// The element as a surface of its own, with its Bézier points, over the unit square.
+NurbsSurface<3> bezier_surface(const ExtractedSurface& surface, int element);
 
 /// A map with negative determinant turns the natural normal round.
 ExtractedSurface transform(const ExtractedSurface& surface, const AffineMap<3>& map);

@@ -20,24 +20,25 @@ using geometry::Points;
 using geometry::SurfaceShape;
 using geometry::Vector3;
 
-const NurbsCurve<3>& carrier(const NurbsCurve<3>& curve) {
-  return curve;
+const HomogeneousPoints<3>& net_of(const NurbsCurve<3>& curve) {
+  return curve.homogeneous();
 }
-const NurbsSurface<3>& carrier(const geometry::Patch<3>& patch) {
-  return geometry::surface_of(patch.shape);
+const HomogeneousPoints<3>& net_of(const geometry::Patch<3>& patch) {
+  const auto* extracted = std::get_if<geometry::ExtractedSurface>(&patch.shape);
+  return extracted ? extracted->homogeneous() : geometry::surface_of(patch.shape).homogeneous();
 }
 
 /// Of curves, or of the surfaces of patches.
 template <class Range>
 Points<3> all_control_points(const Range& shapes) {
   Eigen::Index count = 0;
-  for (const auto& shape : shapes) count += carrier(shape).homogeneous().cols();
+  for (const auto& shape : shapes) count += net_of(shape).cols();
   Points<3> points(3, count);
   Eigen::Index column = 0;
   for (const auto& shape : shapes) {
-    const Points<3> own = carrier(shape).control_points();
-    points.middleCols(column, own.cols()) = own;
-    column += own.cols();
+    const HomogeneousPoints<3>& net = net_of(shape);
+    points.middleCols(column, net.cols()) = net.topRows<3>().array().rowwise() / net.row(3).array();
+    column += net.cols();
   }
   return points;
 }

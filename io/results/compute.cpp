@@ -113,6 +113,17 @@ int count_trimmed(const geometry::Boundary<3>& boundary) {
   }));
 }
 
+void add_extractions(const geometry::Boundary<2>& /*boundary*/, GeometrySummary& /*summary*/) {}
+void add_extractions(const geometry::Boundary<3>& boundary, GeometrySummary& summary) {
+  for (const geometry::Patch<3>& patch : boundary.patches) {
+    const auto* extracted = std::get_if<geometry::ExtractedSurface>(&patch.shape);
+    if (!extracted) continue;
+    ++summary.t_splines;
+    for (const double defect : partition_defects(*extracted))
+      summary.partition_defect = std::max(summary.partition_defect, defect);
+  }
+}
+
 template <int Dim>
 GeometrySummary summary_of(const Model<Dim>& model) {
   const geometry::Topology<Dim>& topology = model.oriented.topology;
@@ -122,6 +133,7 @@ GeometrySummary summary_of(const Model<Dim>& model) {
   summary.patches = static_cast<int>(model.oriented.boundary.patches.size());
   summary.elements = static_cast<std::int64_t>(model.table.elements.size());
   summary.trimmed_faces = count_trimmed(model.oriented.boundary);
+  add_extractions(model.oriented.boundary, summary);
   summary.shells = static_cast<int>(topology.shells.size());
   summary.voids = static_cast<int>(
       std::count_if(topology.shells.begin(), topology.shells.end(), [](const auto& shell) { return shell.is_void; }));

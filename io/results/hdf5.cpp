@@ -267,6 +267,8 @@ void write_geometry(hid_t file, const Report& report, const AnyModel& model) {
   write_attribute<std::int32_t>(group, "patches", summary.patches);
   write_attribute<std::int64_t>(group, "elements", summary.elements);
   write_attribute<std::int32_t>(group, "trimmed_faces", summary.trimmed_faces);
+  write_attribute<std::int32_t>(group, "t_splines", summary.t_splines);
+  if (summary.t_splines > 0) write_attribute<double>(group, "partition_defect", summary.partition_defect);
   write_attribute<std::int8_t>(group, "closed", summary.closed ? 1 : 0);
   write_attribute<double>(group, "closure_defect", summary.closure_defect);
   write_attribute<double>(group, "pole_shift", summary.pole_shift);

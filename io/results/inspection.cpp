@@ -1,7 +1,9 @@
 #include "io/results/inspection.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <set>
 #include <variant>
 
 #include <fmt/format.h>
@@ -15,15 +17,15 @@ std::vector<int> degrees(const geometry::Patch<2>& patch) {
   return {patch.shape.degree()};
 }
 std::vector<int> degrees(const geometry::Patch<3>& patch) {
-  const geometry::NurbsSurface<3>& surface = geometry::surface_of(patch.shape);
-  return {surface.knots_u().degree(), surface.knots_v().degree()};
-}
-
-bool is_polynomial(const geometry::Patch<2>& patch) {
-  return patch.shape.is_polynomial();
-}
-bool is_polynomial(const geometry::Patch<3>& patch) {
-  return geometry::surface_of(patch.shape).is_polynomial();
+  const auto* extracted = std::get_if<geometry::ExtractedSurface>(&patch.shape);
+  if (!extracted) {
+    const geometry::NurbsSurface<3>& surface = geometry::surface_of(patch.shape);
+    return {surface.knots_u().degree(), surface.knots_v().degree()};
+  }
+  std::vector<int> highest{0, 0};
+  for (const geometry::ExtractionElement& element : extracted->elements())
+    for (const std::size_t d : {0u, 1u}) highest[d] = std::max<int>(highest[d], element.degree[d]);
+  return highest;
 }
 
 bool is_trimmed(const geometry::Patch<2>& /*patch*/) {
@@ -33,14 +35,33 @@ bool is_trimmed(const geometry::Patch<3>& patch) {
   return std::holds_alternative<geometry::TrimmedSurface>(patch.shape);
 }
 
+std::optional<InspectedExtraction> extraction_of(const geometry::Patch<2>& /*patch*/) {
+  return std::nullopt;
+}
+std::optional<InspectedExtraction> extraction_of(const geometry::Patch<3>& patch) {
+  const auto* extracted = std::get_if<geometry::ExtractedSurface>(&patch.shape);
+  if (!extracted) return std::nullopt;
+  InspectedExtraction result;
+  result.functions = extracted->function_count();
+  std::set<std::size_t> counts;
+  for (const geometry::ExtractionElement& element : extracted->elements()) counts.insert(element.functions.size());
+  result.functions_per_element.assign(counts.begin(), counts.end());
+  for (const double defect : partition_defects(*extracted)) {
+    result.partition_defect = std::max(result.partition_defect, defect);
+    if (defect > geometry::partition_rounding) ++result.defective_elements;
+  }
+  return result;
+}
+
 template <int Dim>
 std::vector<InspectedPatch> patches_of(const Model<Dim>& model) {
   std::vector<InspectedPatch> patches;
   for (const geometry::Patch<Dim>& patch : model.oriented.boundary.patches) {
     patches.push_back({.name = patch.name,
                        .degrees = degrees(patch),
-                       .polynomial = is_polynomial(patch),
+                       .polynomial = true,
                        .trimmed = is_trimmed(patch),
+                       .extraction = extraction_of(patch),
                        .orientation = patch.orientation,
                        .origin = std::nullopt});
     if (!model.origins.empty()) patches.back().origin = model.origins[patches.size() - 1];
@@ -48,6 +69,7 @@ std::vector<InspectedPatch> patches_of(const Model<Dim>& model) {
   for (const geometry::BezierElement<Dim>& element : model.table.elements) {
     InspectedPatch& patch = patches[static_cast<std::size_t>(element.patch)];
     ++patch.elements;
+    patch.polynomial = patch.polynomial && element.polynomial;
     if (element.is_cut()) ++patch.cut_elements;
   }
   return patches;
@@ -83,13 +105,21 @@ InspectedFreeEdge free_edge_of(const Model<2>& model, const geometry::FreeEdge<2
   return result;
 }
 
-InspectedFreeEdge free_edge_of(const Model<3>& model, const geometry::FreeEdge<3>& edge) {
+std::string place_of(const geometry::Patch<3>& patch, const geometry::FreeEdge<3>& edge) {
   constexpr std::array<const char*, 4> sides{"v = first", "u = last", "v = last", "u = first"};
+  constexpr std::array<const char*, 4> cell_sides{"t = 0", "s = 1", "t = 1", "s = 0"};
+  const auto side = static_cast<std::size_t>(edge.curve);
+  if (is_trimmed(patch)) return fmt::format("loop {}, curve {}", edge.loop + 1, edge.curve + 1);
+  if (std::holds_alternative<geometry::ExtractedSurface>(patch.shape))
+    return fmt::format("{} of element {}", cell_sides[side], edge.loop);
+  return sides[side];
+}
+
+InspectedFreeEdge free_edge_of(const Model<3>& model, const geometry::FreeEdge<3>& edge) {
   const geometry::Patch<3>& patch = patch_at(model, edge.patch);
   InspectedFreeEdge result;
   result.patch = patch.name;
-  result.place = is_trimmed(patch) ? fmt::format("loop {}, curve {}", edge.loop + 1, edge.curve + 1)
-                                   : sides[static_cast<std::size_t>(edge.curve)];
+  result.place = place_of(patch, edge);
   result.from = list(edge.from);
   result.to = list(edge.to);
   result.length = edge.length;

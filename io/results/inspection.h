@@ -11,14 +11,25 @@
 /// What `isorim check` tells of a file or case.
 namespace isorim::io {
 
+/// Of a T-spline, given by its extraction.
+struct InspectedExtraction {
+  int functions = 0;
+  /// How many live on an element: the numbers that occur, in increasing order.
+  std::vector<std::size_t> functions_per_element;
+  /// The largest |sum of the functions - 1|, and on how many elements it is more than rounding.
+  double partition_defect = 0.0;
+  int defective_elements = 0;
+};
+
 struct InspectedPatch {
   std::string name;
-  /// One of a curve, two of a surface.
+  /// One of a curve, two of a surface: of a T-spline the highest among its elements.
   std::vector<int> degrees;
   int elements = 0;
   int cut_elements = 0;
   bool polynomial = false;
   bool trimmed = false;
+  std::optional<InspectedExtraction> extraction;
   /// +1 as the file gives it, -1 reversed.
   int orientation = 1;
   /// Entity, solid, level, colour, repairs, if the patch is from a CAD file.
@@ -35,7 +46,7 @@ struct InspectedShell {
 /// An edge, or end of a plane curve, that nothing continues.
 struct InspectedFreeEdge {
   std::string patch;
-  /// "start", "v = first", "loop 2, curve 1", ...
+  /// "start", "v = first", "loop 2, curve 1", "t = 0 of element 12", ...
   std::string place;
   std::vector<double> from;
   std::vector<double> to;

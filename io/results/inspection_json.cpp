@@ -13,6 +13,11 @@ Json patch_json(const InspectedPatch& patch) {
   json["rational"] = !patch.polynomial;
   json["trimmed"] = patch.trimmed;
   json["orientation"] = patch.orientation;
+  if (patch.extraction)
+    json["extraction"] = {{"functions", patch.extraction->functions},
+                          {"functions_per_element", patch.extraction->functions_per_element},
+                          {"partition_defect", number(patch.extraction->partition_defect)},
+                          {"defective_elements", patch.extraction->defective_elements}};
   if (!patch.origin) return json;
   const CadOrigin& origin = patch.origin->origin;
   json["entity"] = origin.entity;

@@ -65,7 +65,8 @@ std::string repairs_text(const geometry::FaceRepairs& repairs, const std::string
 std::string cad_text(const CadFacts& facts) {
   std::string text = fmt::format("  {}, read by {}\n", facts.format, facts.reader);
   if (!facts.author.empty()) text += fmt::format("  written by {}\n", facts.author);
-  text += facts.unit == facts.file_unit
+  text += facts.unit.empty() ? "  no unit\n"
+          : facts.unit == facts.file_unit
               ? fmt::format("  unit {}\n", facts.unit)
               : fmt::format("  unit {}, converted to {} (times {:g})\n", facts.file_unit, facts.unit, facts.scale);
   text += fmt::format("  faces {}, solids {}, curves {}, points {}\n\n", facts.faces, facts.solids, facts.curves,
@@ -91,15 +92,36 @@ std::string elements_text(const InspectedPatch& patch) {
                                  : fmt::format("{} ({} cut)", patch.elements, patch.cut_elements);
 }
 
+std::string kind_text(const InspectedPatch& patch) {
+  return std::string(patch.polynomial ? "polynomial" : "rational") + (patch.trimmed ? ", trimmed" : "") +
+         (patch.extraction ? ", T-spline" : "");
+}
+
+/// A line for each T-spline.
+std::string extractions_text(const std::vector<InspectedPatch>& patches) {
+  std::string text;
+  for (const InspectedPatch& patch : patches) {
+    if (!patch.extraction) continue;
+    const InspectedExtraction& extraction = *patch.extraction;
+    text += fmt::format("  {}: {} functions, {} on an element", patch.name, extraction.functions,
+                        fmt::join(extraction.functions_per_element, ", "));
+    text += extraction.defective_elements == 0
+                ? ", which sum to one\n"
+                : fmt::format("; on {} elements they do not sum to one, by up to {:.2g}: divided by their sum\n",
+                              extraction.defective_elements, extraction.partition_defect);
+  }
+  return text;
+}
+
 std::string patches_text(const std::vector<InspectedPatch>& patches) {
   TextTable table({{"patch"}, {"degree"}, {"elements", Align::right}, {"kind"}, {"orientation"}, {"entity"}});
   for (std::size_t i = 0; i < std::min(most_lines, patches.size()); ++i) {
     const InspectedPatch& patch = patches[i];
     table.add_row({patch.name, fmt::format("{}", fmt::join(patch.degrees, " x ")), elements_text(patch),
-                   std::string(patch.polynomial ? "polynomial" : "rational") + (patch.trimmed ? ", trimmed" : ""),
-                   patch.orientation > 0 ? "as given" : "reversed", patch.origin ? patch.origin->origin.entity : ""});
+                   kind_text(patch), patch.orientation > 0 ? "as given" : "reversed",
+                   patch.origin ? patch.origin->origin.entity : ""});
   }
-  return table.text(2) + more(patches.size()) + '\n';
+  return table.text(2) + more(patches.size()) + extractions_text(patches) + '\n';
 }
 
 std::string shells_text(const Inspection& inspection) {
@@ -141,7 +163,7 @@ std::string free_edges_text(const Inspection& inspection) {
 
 std::string numbers_text(const Inspection& inspection) {
   const GeometrySummary& geometry = *inspection.geometry;
-  const std::string unit = inspection.cad ? ' ' + inspection.cad->unit : "";
+  const std::string unit = inspection.cad && !inspection.cad->unit.empty() ? ' ' + inspection.cad->unit : "";
   const std::string place = geometry.largest_gap > 0.0 && !geometry.largest_gap_place.empty()
                                 ? fmt::format(" near {}", point_text(geometry.largest_gap_place))
                                 : "";

@@ -20,11 +20,13 @@ Json geometry_json(const GeometrySummary& geometry, const std::optional<CadFacts
   json["patches"] = geometry.patches;
   json["elements"] = geometry.elements;
   json["trimmed_faces"] = geometry.trimmed_faces;
+  json["t_splines"] = geometry.t_splines;
+  json["partition_defect"] = geometry.t_splines > 0 ? number(geometry.partition_defect) : Json(nullptr);
   json["closed"] = geometry.closed;
   json["closure_defect"] = number(geometry.closure_defect);
   json["pole_shift"] = number(geometry.pole_shift);
-  // The shapes of a case file are in no unit of their own.
-  json["units"] = cad ? Json(cad->unit) : Json(nullptr);
+  // The shapes of a case file are in no unit of their own, nor those of T-spline files.
+  json["units"] = cad && !cad->unit.empty() ? Json(cad->unit) : Json(nullptr);
   json["shells"] = geometry.shells;
   json["voids"] = geometry.voids;
   json["free_edges"] = geometry.free_edges;
@@ -54,7 +56,7 @@ Json repairs_json(const geometry::FaceRepairs& repairs) {
 Json cad_json(const CadFacts& facts) {
   Json json;
   json["author"] = facts.author;
-  json["file_unit"] = facts.file_unit;
+  json["file_unit"] = facts.file_unit.empty() ? Json(nullptr) : Json(facts.file_unit);
   json["scale"] = number(facts.scale);
   json["faces"] = facts.faces;
   json["solids"] = facts.solids;

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/topology/shape_loops.h"
 #include "geometry/trimming/lifted_curve.h"
 #include "io/svg/drawing.h"
 #include "io/vtk/bezier_writer.h"
@@ -81,28 +82,23 @@ struct Stretch {
   geometry::Interval domain;
 };
 
-/// Lifts stretches; the loops of a patch are made once while they follow one another.
+/// Lifts stretches.
 class EdgeLifter {
  public:
   explicit EdgeLifter(const Model<3>& model)
-      : boundary_(model.oriented.boundary), tolerance_(1e-6 * geometry::bounding_box(model.table).diagonal()) {}
+      : loops_(geometry::shape_loops(model.oriented.boundary)),
+        tolerance_(1e-6 * geometry::bounding_box(model.table).diagonal()) {}
 
-  geometry::NurbsCurve<3> lift(const Stretch& stretch) {
-    const geometry::Patch<3>& patch = boundary_.patches[static_cast<std::size_t>(stretch.patch)];
-    if (stretch.patch != current_) {
-      loops_ = geometry::trim_loops(patch.shape);
-      current_ = stretch.patch;
-    }
-    const geometry::NurbsCurve<2>& pcurve =
-        loops_[static_cast<std::size_t>(stretch.loop)].curves[static_cast<std::size_t>(stretch.curve)];
-    return geometry::lift(geometry::surface_of(patch.shape), geometry::restrict_to(pcurve, stretch.domain), tolerance_);
+  geometry::NurbsCurve<3> lift(const Stretch& stretch) const {
+    const geometry::ShapeLoops& loops = loops_[static_cast<std::size_t>(stretch.patch)];
+    const geometry::NurbsCurve<2> pcurve =
+        geometry::restrict_to(loops.curve(stretch.loop, stretch.curve), stretch.domain);
+    return geometry::lift(loops.surface(stretch.loop), pcurve, tolerance_);
   }
 
  private:
-  const geometry::Boundary<3>& boundary_;
+  std::vector<geometry::ShapeLoops> loops_;
   double tolerance_;
-  int current_ = -1;
-  std::vector<geometry::TrimLoop> loops_;
 };
 
 /// Curves of a file and what is said about each.
@@ -119,7 +115,7 @@ struct EdgeCurves {
 };
 
 void append_free_edges(const Model<3>& model, EdgeCurves& edges) {
-  EdgeLifter lifter(model);
+  const EdgeLifter lifter(model);
   for (const geometry::FreeEdge<3>& edge : model.oriented.topology.free_edges) {
     edges.curves.push_back(lifter.lift({edge.patch, edge.loop, edge.curve, edge.domain}));
     edges.names.push_back(model.oriented.boundary.patches[static_cast<std::size_t>(edge.patch)].name);
@@ -133,7 +129,7 @@ void append_free_edges(const Model<3>& model, EdgeCurves& edges) {
 void write_edges_vtu(const std::filesystem::path& path, const AnyModel& model) {
   const auto& solid = std::get<Model<3>>(model);
   const auto& patches = solid.oriented.boundary.patches;
-  EdgeLifter lifter(solid);
+  const EdgeLifter lifter(solid);
   EdgeCurves edges;
   for (const geometry::BoundaryEdge& edge : solid.oriented.topology.edges) {
     const geometry::EdgeUse& use = edge.first;

@@ -71,6 +71,9 @@ struct GeometrySummary {
   int patches = 0;
   std::int64_t elements = 0;
   int trimmed_faces = 0;
+  /// Patches given by their extraction, and by how much their functions fail to sum to one at most.
+  int t_splines = 0;
+  double partition_defect = 0.0;
   int shells = 0;
   int voids = 0;
   bool closed = false;

@@ -105,6 +105,10 @@ std::string cad_line(const Report& report) {
   if (!report.cad) return "";
   const GeometrySummary& geometry = report.geometry;
   const std::string& unit = report.cad->unit;
+  if (unit.empty())
+    return fmt::format("  {}; largest gap {}, gaps may cost {} of {}\n", report.cad->format,
+                       small_number(geometry.largest_gap), small_number(geometry.pole_shift),
+                       geometry.dimension == 2 ? "area" : "volume");
   return fmt::format("  {}; unit {}, largest gap {} {}, gaps may cost {} {}^{} of {}\n", report.cad->format, unit,
                      small_number(geometry.largest_gap), unit, small_number(geometry.pole_shift), unit,
                      geometry.dimension, geometry.dimension == 2 ? "area" : "volume");
@@ -147,9 +151,11 @@ std::string exact_number(double x) {
 
 std::string geometry_line(const GeometrySummary& geometry) {
   const std::string trimmed = geometry.trimmed_faces > 0 ? fmt::format(" ({} trimmed)", geometry.trimmed_faces) : "";
+  const std::string t_splines =
+      geometry.t_splines > 0 ? " (" + counted(geometry.t_splines, "T-spline", "T-splines") + ")" : "";
   std::string line =
-      fmt::format("{}D, {}{}, {}, {}", geometry.dimension, counted(geometry.patches, "patch", "patches"), trimmed,
-                  counted(geometry.elements, "element", "elements"), geometry.closed ? "closed" : "OPEN");
+      fmt::format("{}D, {}{}{}, {}, {}", geometry.dimension, counted(geometry.patches, "patch", "patches"), trimmed,
+                  t_splines, counted(geometry.elements, "element", "elements"), geometry.closed ? "closed" : "OPEN");
   if (geometry.voids > 0) {
     line += ", " + (geometry.dimension == 2 ? counted(geometry.voids, "hole", "holes")
                                             : counted(geometry.voids, "void", "voids"));

@@ -12,6 +12,7 @@
 #include "geometry/shapes/regions.h"
 #include "geometry/shapes/solids.h"
 #include "geometry/shapes/transforms.h"
+#include "tests/geometry/tspline/extracted_surfaces.h"
 
 namespace isorim::solver {
 namespace {
@@ -181,6 +182,18 @@ TEST(Properties, UnresolvedElementIsReported) {
   // A hundred to one: one rule of 24 points cannot resolve this rational sphere.
   const auto sphere = bezier_elements(geometry::ellipsoid({1.0, 100.0, 1.0}));
   EXPECT_EQ(geometric_properties(sphere, options).boundary_status, Status::tolerance_not_reached);
+}
+
+TEST(Properties, ExtractedSurfacesHaveThoseOfTheNurbsThatTheyWere) {
+  namespace test = geometry::testing;
+  geometry::Boundary<3> torus = test::extracted(geometry::torus(3.0, 1.0, Point3(1.0, 2.0, 3.0)));
+  const auto& whole = std::get<geometry::ExtractedSurface>(torus.patches[0].shape);
+  torus.patches[0].shape = test::cut_element(test::cut_element(whole, 3, 0, 0.3), 7, 1, 0.6);
+  const auto result = geometric_properties(bezier_elements(torus));
+  EXPECT_NEAR(result.boundary_measure.value, 12.0 * pi * pi, 1e-13 * 12.0 * pi * pi);
+  EXPECT_NEAR(result.domain->measure.value, 6.0 * pi * pi, 1e-13 * 6.0 * pi * pi);
+  EXPECT_LT((result.domain->centroid - Point3(1.0, 2.0, 3.0)).norm(), 1e-13);
+  EXPECT_LT(result.closure_defect, 1e-15);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "tests/geometry/random_splines.h"
 #include "tests/geometry/refusals.h"
 #include "tests/geometry/trimming/face_measures.h"
+#include "tests/geometry/tspline/extracted_surfaces.h"
 
 namespace isorim::geometry {
 namespace {
@@ -285,6 +286,36 @@ TEST(Section, OfAHollowBall) {
   const Boundary<3> half = clip(hollow, PlaneTool{Point3::Zero(), Vector3(0, 0, 1)});
   EXPECT_THAT(names(half), ::testing::ElementsAre("sphere", "void", "cap"));
   expect_solid(half, 7.0 * pi / 12.0, 2.0 * pi + 0.5 * pi + 0.75 * pi);
+}
+
+/// Of one patch by its elements, two of which are cut in two.
+Boundary<3> torus_by_elements() {
+  Boundary<3> solid = testing::extracted(torus(2.0, 0.5));
+  const ExtractedSurface& whole = std::get<ExtractedSurface>(solid.patches[0].shape);
+  solid.patches[0].shape = testing::cut_element(testing::cut_element(whole, 2, 0, 0.4), 9, 1, 0.7);
+  return solid;
+}
+
+TEST(Clip, TakesExtractedSurfacesElementByElement) {
+  const PlaneTool tool{Point3(0.3, 0.1, 0.05), Vector3(0.3, 1.0, 0.2)};
+  const Boundary<3> expected = clip(torus(2.0, 0.5), tool);
+  const Measures measure = face_measures(expected);
+  expect_solid(clip(torus_by_elements(), tool), measure.content, measure.boundary, 1e-12);
+  const KnotVector side = KnotVector::clamped(1, std::vector<double>{-4.0, 4.0});
+  Points<3> corners(3, 4);
+  corners << -4, 4, -4, 4, -4, -4, 4, 4, 0, 0, 0, 0;
+  const auto area_of = [&](const Boundary<3>& solid) {
+    const auto plane = NurbsSurface<3>::from_points(side, side, corners);
+    return testing::face_area(TrimmedSurface(plane, section(solid, tool).loops));
+  };
+  EXPECT_NEAR(area_of(torus_by_elements()), area_of(torus(2.0, 0.5)), 1e-12);
+}
+
+TEST(Clip, LeavesExtractedSurfacesThatItDoesNotMeet) {
+  const Boundary<3> solid = torus_by_elements();
+  const Boundary<3> left = clip(solid, PlaneTool{Point3(0.0, 0.0, 0.6)});
+  ASSERT_EQ(left.patches.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<ExtractedSurface>(left.patches[0].shape));
 }
 
 }  // namespace
