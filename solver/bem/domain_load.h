@@ -63,7 +63,8 @@ class DomainLoad {
   virtual bool is_thermal() const { return false; }
   /// The moments along the rays are known in closed form and the integrand is smooth.
   virtual bool is_closed_form() const = 0;
-  /// Length over which its functions have to be resolved by a rule of some ten points; infinite in closed form.
+  /// Rules of some ten points on parts of the boundary of this length do not miss peaks of its functions; infinite if
+  /// there are none.
   virtual double resolution_length() const = 0;
 };
 
@@ -132,9 +133,9 @@ struct LoadOptions {
 };
 
 /// int_Omega U(x, z) b(z) dOmega of all loads together at every target (of temperatures everything, the uniform rise
-/// too): components x targets. `rules` are those of the caller's other integrals. Where they do not resolve a load,
-/// which is found out at some of the targets by adaptive integration, finer ones are used, and adaptive integration
-/// itself for peaks. Throws NumericalError as the loads do.
+/// too): components x targets. `rules` are those of the caller's other integrals. Where finer ones disagree with them
+/// at some of the targets these are used, on parts of the elements if the load has peaks; and adaptive integration if
+/// all of them disagree (a load with kinks). Throws NumericalError as the loads do.
 template <int Dim>
 Eigen::MatrixXd domain_potentials(const Loads<Dim>& loads, const geometry::ElementTable<Dim>& table,
                                   const quadrature::TargetRules<Dim>& rules,
