@@ -30,18 +30,34 @@ struct NodeView {
   std::array<std::span<const double>, Dim> position;
   /// Unit, outward.
   std::array<std::span<const double>, Dim> normal;
-  /// Times the Jacobian.
+  /// Times the Jacobian. Negative ones occur on cut elements only.
   std::span<const double> weight;
-  /// Which of the element's kept rules this is, so that basis values at its nodes can be kept as well; -1: made for the
-  /// target.
+  /// position - target, exact to rounding relative to the element's own size, wherever that lies; empty if the nodes
+  /// are not made for one target.
+  std::array<std::span<const double>, Dim> offset{};
+  /// Not 0: the nodes are those of the tensor Gauss-Legendre rule with so many points in each direction of the cell,
+  /// the first direction fastest (bernstein_table() has the basis at them).
+  std::array<int, Dim - 1> orders{};
+  /// Which of the kept rules this is, so that basis values at its nodes can be kept as well: equal numbers mean equal
+  /// places, on whichever element; they are small. -1: made for the target.
   int kept = -1;
 
   std::size_t size() const { return weight.size(); }
+  bool is_tensor() const { return orders[0] > 0; }
 };
 
 /// A thread's room for nodes that are made for one target.
 template <int Dim>
-class NodeBuffer;
+struct NodeBuffer {
+  std::size_t size = 0;
+  std::array<std::vector<double>, Dim - 1> place;
+  std::array<std::vector<double>, Dim> position;
+  std::array<std::vector<double>, Dim> normal;
+  std::array<std::vector<double>, Dim> offset;
+  std::vector<double> weight;
+  /// What the vectors above were made from: weights on the unit cell.
+  std::vector<double> cell_weight;
+};
 
 /// Rules for all elements of a table. Far elements are served from kept tensor rules whose order goes with the distance
 /// in each direction; near ones by subdivision and sinh or Telles maps towards the closest point; the target's own by
@@ -64,8 +80,15 @@ class TargetRules {
   /// several threads with different buffers.
   NodeView<Dim> nodes(int element, const Target<Dim>& target, NodeBuffer<Dim>& buffer) const;
 
-  /// The kept rule of an element that serves all targets at least `distance` (in units of the element's size) away.
+  /// The kept rule of an element that serves all targets at least `distance` away from its sphere.
   NodeView<Dim> far_nodes(int element, double distance) const;
+
+  /// A sphere (circle) that holds the element.
+  struct Sphere {
+    geometry::Point<Dim> centre;
+    double radius = 0.0;
+  };
+  Sphere sphere(int element) const;
 
  private:
   struct State;

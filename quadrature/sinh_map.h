@@ -1,0 +1,96 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <span>
+
+#include "quadrature/gauss_legendre.h"
+
+/// Gauss-Legendre rules for integrands with known nearest singularities: maps of the unit interval that move these
+/// away, and the number of points that a tolerance needs, both from Bernstein ellipses.
+namespace isorim::quadrature {
+
+/// log rho of the Bernstein ellipse about [0, 1] that passes through z: Chebyshev coefficients of a function that is
+/// analytic inside it fall like rho^-k.
+double log_ellipse(std::complex<double> z);
+
+/// The interval [0, 1] mapped to itself by u(g) = centre + scale sinh(t0 + g (t1 - t0)), which turns integrands with
+/// singularities at centre +- i scale into ones that are analytic in a strip of half the width pi (Johnston & Elliott,
+/// A sinh transformation for evaluating nearly singular boundary element integrals, IJNME 62 (2005) 564-578); or not
+/// mapped.
+class SinhMap {
+ public:
+  /// u = g.
+  SinhMap() = default;
+  /// Towards a singularity near the interval: it need not be known exactly. Not mapped if it lies so far off that the
+  /// map would gain nothing.
+  static SinhMap towards(std::complex<double> singularity);
+  /// scale > 0; the centre may lie anywhere.
+  SinhMap(double centre, double scale);
+
+  bool is_identity() const { return scale_ == 0.0; }
+  struct Value {
+    double place;
+    double derivative;
+  };
+  Value at(double g) const;
+  std::complex<double> at(std::complex<double> g) const;
+  /// log_ellipse of that preimage of u which lies nearest to the interval.
+  double log_ellipse_of(std::complex<double> u) const;
+
+ private:
+  double centre_ = 0.0;
+  double scale_ = 0.0;
+  double first_ = 0.0;
+  double length_ = 1.0;
+};
+
+/// log of how fast functions of a kind may grow away from [0, 1]: on the ellipse of log rho = l they are at most
+/// exp(growth(l)) times as large as on the interval. Convex, 0 at 0.
+class Growth {
+ public:
+  /// Polynomials of a degree.
+  explicit Growth(double degree = 0.0);
+  /// Functions whose Chebyshev coefficients have these sizes (relative to the largest value), times polynomials.
+  Growth(std::span<const double> coefficients, double degree);
+
+  double operator()(double log_rho) const;
+
+ private:
+  static constexpr double step = 0.25;
+  std::array<float, 17> values_{};
+};
+
+/// The number of points of a Gauss-Legendre rule in g for an integrand with the given log_ellipse_of its nearest
+/// singularity, times factors that grow like exp(growth(u)), u = map.at(g), to the tolerance (relative to the size of
+/// the integrand on the interval). Any singularity weaker than the inverse cube of the distance.
+template <class GrowthAt>
+int gauss_points(const SinhMap& map, double log_rho, double tolerance, const GrowthAt& growth);
+
+// --- Implementation -------------------------------------------------------------------------------------------------
+
+/// The point of the ellipse about [0, 1] at an angle.
+inline std::complex<double> ellipse_point(double log_rho, double angle) {
+  return 0.5 + 0.5 * std::complex<double>(std::cosh(log_rho) * std::cos(angle), std::sinh(log_rho) * std::sin(angle));
+}
+
+template <class GrowthAt>
+int gauss_points(const SinhMap& map, double log_rho, double tolerance, const GrowthAt& growth) {
+  constexpr std::array<double, 6> shares{1.0, 0.75, 0.55, 0.4, 0.28, 0.18};
+  constexpr double quarter = 0.78539816339744831;
+  constexpr double constant = 3.0;
+  const double digits = constant - std::log(tolerance);
+  double least = max_gauss_points;
+  for (const double share : shares) {
+    const double l = share * std::clamp(log_rho, 0.01, 4.0);
+    double grown = 0.0;
+    for (int k = 0; k <= 4; ++k) grown = std::max(grown, growth(map.at(ellipse_point(l, k * quarter))));
+    least = std::min(least, (digits + grown) / (2.0 * l));
+  }
+  return std::max(2, static_cast<int>(std::ceil(least)));
+}
+
+}  // namespace isorim::quadrature

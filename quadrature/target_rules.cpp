@@ -1,0 +1,234 @@
+#include "quadrature/target_rules.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+
+#include "quadrature/element_jet.h"
+#include "quadrature/element_shape.h"
+#include "quadrature/gauss_legendre.h"
+#include "quadrature/near_rule.h"
+#include "quadrature/parallel.h"
+
+namespace isorim::quadrature {
+
+namespace {
+
+/// Rules of more points in a direction are made for the target.
+constexpr int most_kept_points = 24;
+/// Far targets are sorted by distance from the centre of the element's sphere, in units of its radius.
+constexpr std::array<double, 9> far_levels{1.35, 1.6, 2.0, 2.6, 3.5, 5.0, 8.0, 14.0, 30.0};
+
+/// Few different ones, so that few rules are kept.
+int rounded_order(int order) {
+  return order <= 8 ? order : order + order % 2;
+}
+
+template <int Dim>
+NodeView<Dim> view_of(const NodeBuffer<Dim>& nodes) {
+  NodeView<Dim> view;
+  const std::size_t size = nodes.size;
+  for (std::size_t d = 0; d < Dim - 1; ++d) view.place[d] = std::span(nodes.place[d]).first(size);
+  for (std::size_t c = 0; c < Dim; ++c) {
+    view.position[c] = std::span(nodes.position[c]).first(size);
+    view.normal[c] = std::span(nodes.normal[c]).first(size);
+  }
+  view.weight = std::span(nodes.weight).first(size);
+  return view;
+}
+
+/// A rule that has been made once for an element.
+template <int Dim>
+struct KeptRule {
+  NodeBuffer<Dim> nodes;
+  NodeView<Dim> view;
+  const KeptRule* next = nullptr;
+};
+
+template <int Dim>
+void set_tensor(const std::array<int, Dim - 1>& orders, NodeBuffer<Dim>& nodes) {
+  std::size_t size = 1;
+  for (const int order : orders) size *= static_cast<std::size_t>(order);
+  nodes.size = size;
+  nodes.cell_weight.assign(size, 1.0);
+  std::size_t stride = 1;
+  for (std::size_t d = 0; d < Dim - 1; ++d) {
+    const Rule& rule = gauss_legendre(orders[d]);
+    nodes.place[d].resize(size);
+    for (std::size_t q = 0; q < size; ++q) {
+      const std::size_t k = q / stride % rule.nodes.size();
+      nodes.place[d][q] = rule.nodes[k];
+      nodes.cell_weight[q] *= rule.weights[k];
+    }
+    stride *= rule.nodes.size();
+  }
+}
+
+/// A small number for each pair of orders.
+template <int Dim>
+int number_of(const std::array<int, Dim - 1>& orders) {
+  int number = orders[0] - 1;
+  if constexpr (Dim == 3) number += most_kept_points * (orders[1] - 1);
+  return number;
+}
+
+/// What is known of an element, and its kept rules: a list to which rules are added in front, never taken away.
+template <int Dim>
+struct ElementState {
+  ElementShape<Dim> shape;
+  std::array<std::array<int, Dim - 1>, far_levels.size()> far_orders{};
+  std::atomic<const KeptRule<Dim>*> rules{nullptr};
+  std::array<std::atomic<const KeptRule<Dim>*>, far_levels.size()> far_rules{};
+
+  ~ElementState() {
+    const KeptRule<Dim>* rule = rules.load();
+    while (rule != nullptr) {
+      const KeptRule<Dim>* next = rule->next;
+      delete rule;
+      rule = next;
+    }
+  }
+};
+
+}  // namespace
+
+template <int Dim>
+struct TargetRules<Dim>::State {
+  using Orders = std::array<int, Dim - 1>;
+
+  Options options;
+  std::vector<ElementState<Dim>> elements;
+
+  State(const geometry::ElementTable<Dim>& table, const Options& chosen)
+      : options(chosen), elements(table.elements.size()) {
+    constexpr std::size_t chunk = 16;
+    parallel_for((elements.size() + chunk - 1) / chunk, 0, [&](std::size_t task, int) {
+      for (std::size_t e = task * chunk; e < std::min((task + 1) * chunk, elements.size()); ++e) {
+        elements[e].shape =
+            element_shape(element_net(table, table.elements[e]), options.field_degree, options.tolerance);
+        set_far_orders(elements[e]);
+      }
+    });
+  }
+
+  /// Of a target at the far end of the level's range, beyond the end of a parameter line: nowhere else can the
+  /// singularity's ellipse be smaller.
+  void set_far_orders(ElementState<Dim>& element) const {
+    for (std::size_t level = 0; level < far_levels.size(); ++level) {
+      const double gap = (far_levels[level] - 1.0) * element.shape.radius;
+      for (std::size_t d = 0; d < Dim - 1; ++d) {
+        const double half = std::max(element.shape.half_length[d], 1e-12 * element.shape.radius);
+        const Growth& growth = element.shape.growth[d];
+        const double log_rho = std::acosh(1.0 + gap / half);
+        const int points = gauss_points(SinhMap(), log_rho, options.tolerance,
+                                        [&](std::complex<double> u) { return growth(log_ellipse(u)); });
+        element.far_orders[level][d] = rounded_order(points);
+      }
+    }
+  }
+
+  bool can_keep(const Orders& orders) const {
+    return std::all_of(orders.begin(), orders.end(), [](int n) { return 0 < n && n <= most_kept_points; });
+  }
+
+  const KeptRule<Dim>& kept(ElementState<Dim>& element, const Orders& orders) const {
+    const KeptRule<Dim>* known = element.rules.load(std::memory_order_acquire);
+    if (const KeptRule<Dim>* found = find(known, nullptr, orders)) return *found;
+    auto rule = std::make_unique<KeptRule<Dim>>();
+    set_tensor<Dim>(orders, rule->nodes);
+    evaluate_nodes(element.shape.net, element.shape.centre, rule->nodes);
+    rule->nodes.cell_weight = {};
+    for (std::vector<double>& values : rule->nodes.offset) values = {};
+    rule->view = view_of(rule->nodes);
+    rule->view.orders = orders;
+    rule->view.kept = number_of<Dim>(orders);
+    // Another thread may have added the same meanwhile: all must see one.
+    const KeptRule<Dim>* searched = known;
+    rule->next = known;
+    while (!element.rules.compare_exchange_weak(rule->next, rule.get(), std::memory_order_acq_rel)) {
+      if (const KeptRule<Dim>* found = find(rule->next, searched, orders)) return *found;
+      searched = rule->next;
+    }
+    return *rule.release();
+  }
+
+  /// Searches the list up to `end`.
+  static const KeptRule<Dim>* find(const KeptRule<Dim>* rule, const KeptRule<Dim>* end, const Orders& orders) {
+    for (; rule != end; rule = rule->next) {
+      if (rule->view.orders == orders) return rule;
+    }
+    return nullptr;
+  }
+
+  /// The rule of a far level, or none if it is too large to keep.
+  const KeptRule<Dim>* far_rule(ElementState<Dim>& element, std::size_t level) const {
+    const KeptRule<Dim>* rule = element.far_rules[level].load(std::memory_order_acquire);
+    if (rule != nullptr) return rule;
+    if (!can_keep(element.far_orders[level])) return nullptr;
+    rule = &kept(element, element.far_orders[level]);
+    element.far_rules[level].store(rule, std::memory_order_release);
+    return rule;
+  }
+};
+
+template <int Dim>
+TargetRules<Dim>::TargetRules(const geometry::ElementTable<Dim>& table, const Options& options)
+    : state_(std::make_unique<State>(table, options)) {}
+
+template <int Dim>
+TargetRules<Dim>::~TargetRules() = default;
+
+template <int Dim>
+NodeView<Dim> TargetRules<Dim>::nodes(int element, const Target<Dim>& target, NodeBuffer<Dim>& buffer) const {
+  ElementState<Dim>& state = state_->elements[static_cast<std::size_t>(element)];
+  const ElementShape<Dim>& shape = state.shape;
+  const bool is_own = target.element == element;
+  const double squared = (target.position - shape.centre).squaredNorm();
+  const double radius_squared = shape.radius * shape.radius;
+  if (!is_own && squared >= far_levels[0] * far_levels[0] * radius_squared) {
+    std::size_t level = far_levels.size() - 1;
+    while (squared < far_levels[level] * far_levels[level] * radius_squared) --level;
+    if (const KeptRule<Dim>* rule = state_->far_rule(state, level)) return rule->view;
+  }
+  const Options& options = state_->options;
+  const NearRequest<Dim> request{&shape,       target.position,   is_own,
+                                 target.place, options.tolerance, static_cast<double>(options.field_degree)};
+  NearestPlace<Dim> nearest;
+  if (is_own) {
+    nearest = {target.place, element_jet(shape.net, target.place, target.position), 0.0};
+  } else {
+    nearest = nearest_place(shape, Cell<Dim - 1>(), target.position);
+    std::array<int, Dim - 1> orders = plain_orders(request, nearest, most_kept_points);
+    for (int& order : orders) order = rounded_order(order);
+    if (state_->can_keep(orders)) return state_->kept(state, orders).view;
+  }
+  near_rule(request, nearest, buffer);
+  evaluate_nodes(shape.net, target.position, buffer);
+  NodeView<Dim> view = view_of(buffer);
+  for (std::size_t c = 0; c < Dim; ++c) view.offset[c] = std::span(buffer.offset[c]).first(buffer.size);
+  return view;
+}
+
+template <int Dim>
+NodeView<Dim> TargetRules<Dim>::far_nodes(int element, double distance) const {
+  ElementState<Dim>& state = state_->elements[static_cast<std::size_t>(element)];
+  std::size_t level = far_levels.size() - 1;
+  while (level > 0 && state.shape.radius + distance < far_levels[level] * state.shape.radius) --level;
+  std::array<int, Dim - 1> orders = state.far_orders[level];
+  for (int& order : orders) order = std::min(order, most_kept_points);
+  return state_->kept(state, orders).view;
+}
+
+template <int Dim>
+typename TargetRules<Dim>::Sphere TargetRules<Dim>::sphere(int element) const {
+  const ElementShape<Dim>& shape = state_->elements[static_cast<std::size_t>(element)].shape;
+  return {shape.centre, shape.radius};
+}
+
+template class TargetRules<2>;
+template class TargetRules<3>;
+
+}  // namespace isorim::quadrature
