@@ -36,7 +36,7 @@ struct Ray {
   Ray(const geometry::Point<Dim>& target, const quadrature::NodeView<Dim>& nodes, std::size_t node) {
     for (std::size_t i = 0; i < Dim; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      d[row] = nodes.position[i][node] - target[row];
+      d[row] = nodes.offset[i].empty() ? nodes.position[i][node] - target[row] : nodes.offset[i][node];
       flux += d[row] * nodes.normal[i][node];
     }
   }

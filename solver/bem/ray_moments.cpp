@@ -16,11 +16,16 @@ namespace isorim::solver {
 
 namespace {
 
+/// The node less the target.
 template <int Dim>
-geometry::Point<Dim> position(const quadrature::NodeView<Dim>& nodes, std::size_t node) {
-  geometry::Point<Dim> x;
-  for (std::size_t i = 0; i < Dim; ++i) x[static_cast<Eigen::Index>(i)] = nodes.position[i][node];
-  return x;
+geometry::Vector<Dim> ray(const geometry::Point<Dim>& target, const quadrature::NodeView<Dim>& nodes,
+                          std::size_t node) {
+  geometry::Vector<Dim> d;
+  for (std::size_t i = 0; i < Dim; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    d[row] = nodes.offset[i].empty() ? nodes.position[i][node] - target[row] : nodes.offset[i][node];
+  }
+  return d;
 }
 
 bool needs_value_at_target(std::span<const RayMoment> kinds) {
@@ -67,7 +72,7 @@ class QuadraticRays : public RayFunctions<Dim> {
       const double at_target = f(target);
       const geometry::Vector<Dim> slope = f.linear + (f.quadratic + f.quadratic.transpose()) * target;
       for (Eigen::Index q = 0; q < count; ++q) {
-        const geometry::Vector<Dim> d = position(nodes, static_cast<std::size_t>(q)) - target;
+        const geometry::Vector<Dim> d = ray(target, nodes, static_cast<std::size_t>(q));
         const double first = slope.dot(d);
         const double second = d.dot((f.quadratic * d).eval());
         for (std::size_t m = 0; m < kinds.size(); ++m) {
@@ -113,7 +118,7 @@ class SampledRays : public RayFunctions<Dim> {
     for (Eigen::MatrixXd& values : moments) values.setZero(components(), count);
     at_target_ = needs_value_at_target(kinds) ? at(target) : Eigen::VectorXd::Zero(components());
     rays_.resize(Dim, count);
-    for (Eigen::Index q = 0; q < count; ++q) rays_.col(q) = position(nodes, static_cast<std::size_t>(q)) - target;
+    for (Eigen::Index q = 0; q < count; ++q) rays_.col(q) = ray(target, nodes, static_cast<std::size_t>(q));
     std::vector<RayPanel> panels = first_panels();
     const RayRule* rule = &ray_rule(resolution_.order);
     while (!panels.empty()) {
