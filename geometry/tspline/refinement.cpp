@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -215,16 +216,38 @@ double discrete_bspline(std::span<const double> coarse, std::span<const double> 
   return blossom(coarse, piece, fine.subspan(1, fine.size() - 2));
 }
 
-Eigen::Vector4d represented_point(const TSpline& surface, const TMesh& mesh, int function) {
-  const TMesh& coarse = surface.mesh();
-  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-  for (int k = 0; k < coarse.function_count(); ++k) {
-    const double u = discrete_bspline(coarse.local_knots(k, Direction::u), mesh.local_knots(function, Direction::u));
-    if (u == 0.0) continue;
-    sum += u * discrete_bspline(coarse.local_knots(k, Direction::v), mesh.local_knots(function, Direction::v)) *
-           surface.homogeneous().col(k);
+/// Numbers of the functions that may not be zero right above (u, v), increasing.
+std::vector<int> functions_above(const TMesh& mesh, double u, double v) {
+  const std::array<Interval, 2> domain = mesh.domain();
+  if (domain[0].first <= u && u < domain[0].last && domain[1].first <= v && v < domain[1].last) {
+    const int face =
+        mesh.index_mesh().face_at(mesh.knots(Direction::u).find_span(u), mesh.knots(Direction::v).find_span(v));
+    return mesh.functions_on_faces()[static_cast<std::size_t>(face)];
   }
+  // Supports that begin outside the domain, as they do where knots are not clamped.
+  std::vector<int> all(static_cast<std::size_t>(mesh.function_count()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+Eigen::Vector4d represented_point(const TSpline& surface, const TMesh& fine, int function) {
+  const TMesh& coarse = surface.mesh();
+  const std::span<const double> knots_u = fine.local_knots(function, Direction::u);
+  const std::span<const double> knots_v = fine.local_knots(function, Direction::v);
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  for (const int k : functions_above(coarse, knots_u.front(), knots_v.front()))
+    sum += discrete_bspline(coarse.local_knots(k, Direction::u), knots_u) *
+           discrete_bspline(coarse.local_knots(k, Direction::v), knots_v) * surface.homogeneous().col(k);
   return sum;
+}
+
+/// The same surface over a T-mesh whose space holds that of the surface's own.
+TSpline represented(const TSpline& surface, const TMesh& fine) {
+  HomogeneousPoints<3> net(4, fine.function_count());
+  for (int k = 0; k < fine.function_count(); ++k) net.col(k) = represented_point(surface, fine, k);
+  const auto weights = surface.homogeneous().row(3).array();
+  if ((weights == weights[0]).all()) net.row(3).setConstant(weights[0]);
+  return {fine, std::move(net)};
 }
 
 }  // namespace
@@ -245,16 +268,8 @@ TMesh refine(const TMesh& mesh, std::span<const FaceCut> cuts) {
   return {knots_u, knots_v, Closure(coarse, std::move(fine)).close()};
 }
 
-TSpline represent(const TSpline& surface, const TMesh& mesh) {
-  HomogeneousPoints<3> net(4, mesh.function_count());
-  for (int k = 0; k < mesh.function_count(); ++k) net.col(k) = represented_point(surface, mesh, k);
-  const auto weights = surface.homogeneous().row(3).array();
-  if ((weights == weights[0]).all()) net.row(3).setConstant(weights[0]);
-  return {mesh, std::move(net)};
-}
-
 TSpline refine(const TSpline& surface, std::span<const FaceCut> cuts) {
-  return represent(surface, refine(surface.mesh(), cuts));
+  return represented(surface, refine(surface.mesh(), cuts));
 }
 
 std::vector<FaceCut> bisections(const TMesh& mesh, std::span<const int> faces, Bisection how) {

@@ -25,12 +25,9 @@ struct FaceCut {
 /// exist and a knot outside its face.
 TMesh refine(const TMesh& mesh, std::span<const FaceCut> cuts);
 
-/// The same surface over another T-mesh whose space holds that of the surface's own, as refine() makes them. Control
-/// points are convex combinations of the old ones: products of the discrete B-splines of Cohen, Lyche & Riesenfeld
-/// (CGIP 14, 1980), which are what the dual functionals of the new functions give for the old ones. Equal weights stay
-/// equal bit for bit.
-TSpline represent(const TSpline& surface, const TMesh& mesh);
-
+/// The same surface over the refined T-mesh. Control points are convex combinations of the old ones: products of the
+/// discrete B-splines of Cohen, Lyche & Riesenfeld (CGIP 14, 1980), which are what the dual functionals of the new
+/// functions give for the old ones. Equal weights stay equal bit for bit. Errors as above.
 TSpline refine(const TSpline& surface, std::span<const FaceCut> cuts);
 
 /// Which edges divide a face.

@@ -142,7 +142,10 @@ const Schema<OutputKeys>& schema<OutputKeys>() {
           .key("vtk", &OutputKeys::vtk,
                {.text = "boundary.vtu and edges.vtu: exact rational Bézier cells for ParaView."})
           .key("hdf5", &OutputKeys::hdf5, {.text = "results.h5: the results and the Bézier elements."})
-          .key("svg", &OutputKeys::svg, {.text = "boundary.svg: a picture of a region of the plane."});
+          .key(
+              "svg", &OutputKeys::svg,
+              {.text = "boundary.svg: a picture of a region of the plane. tmesh_PATCH.svg: the T-mesh of each T-spline "
+                       "that the case gives."});
   return declared;
 }
 

@@ -19,6 +19,7 @@
 #include "geometry/shapes/transforms.h"
 #include "io/case/curve_builder.h"
 #include "io/case/face_builder.h"
+#include "io/case/tspline_builder.h"
 
 namespace isorim::io {
 namespace {
@@ -313,8 +314,19 @@ NurbsSurface<3> nurbs_surface(const NurbsPatchKeys& keys) {
   return NurbsSurface<3>(u, v, net);
 }
 
+/// The T-meshes of the T-splines that are built, one after the other.
+using Meshes = std::vector<geometry::TMesh>;
+
+/// The surfaces of a list; unnamed ones are called "patch_1", ...
+template <class List>
+Boundary<3> surface_list(const List& list, Meshes& meshes);
+
+/// One surface keeps the names of its patches.
+Boundary<3> nurbs_surfaces(const std::vector<NurbsSurfaceKeys>& list);
+
 struct SurfaceBuilder {
   using Result = Boundary<3>;
+  Meshes& meshes;
 
   Result operator()(const SphereKeys& keys) const { return geometry::sphere(keys.radius, keys.centre); }
   Result operator()(const EllipsoidKeys& keys) const { return geometry::ellipsoid(keys.radii, keys.centre); }
@@ -338,18 +350,35 @@ struct SurfaceBuilder {
     return face("quadrilateral", quadrilateral_surface(keys), keys);
   }
   Result operator()(const NurbsPatchKeys& keys) const { return face("nurbs", nurbs_surface(keys), keys); }
+  Result operator()(const TSplineKeys& keys) const {
+    if (keys.from.items.empty()) return {{{"tspline", extracted(mesh_tspline(keys))}}};
+    Result result = nurbs_surfaces(keys.from.items);
+    for (Patch<3>& patch : result.patches) patch.shape = extracted(as_tspline(patch, keys));
+    return result;
+  }
 
  private:
+  geometry::ExtractedSurface extracted(const geometry::TSpline& surface) const {
+    meshes.push_back(surface.mesh());
+    return geometry::extract(surface);
+  }
   static Result face(const char* name, const NurbsSurface<3>& surface, const FaceKeys& keys) {
     return {{{name, trimmed(surface, keys.trims, keys.where.key("trims", keys.where.place))}}};
   }
 };
 
+bool has_clip(const SolidKeys& keys) {
+  return !keys.clip.items.empty();
+}
+bool has_clip(const ShapeKeys&) {
+  return false;
+}
+
 /// Moved, cut and named.
 template <class Keys>
 Boundary<3> finished_solid(Boundary<3> boundary, const Keys& keys) {
   if constexpr (std::is_base_of_v<SolidKeys, Keys>) {
-    if (!keys.clip.items.empty()) {
+    if (has_clip(keys)) {
       ShapeKeys moving;
       moving.transform = keys.transform;
       boundary = clipped(finished<3>(std::move(boundary), moving), keys.clip, keys.where);
@@ -360,32 +389,49 @@ Boundary<3> finished_solid(Boundary<3> boundary, const Keys& keys) {
   return finished<3>(std::move(boundary), keys);
 }
 
+/// Patches of a solid that is cut are no T-splines any more.
 template <class Keys>
-Boundary<3> surface(const Keys& keys) {
-  return located(keys.where, [&] { return finished_solid(SurfaceBuilder{}(keys), keys); });
+BuiltBoundary<3> built(Boundary<3> boundary, const Keys& keys, Meshes meshes) {
+  if (has_clip(keys)) meshes.clear();
+  return {std::move(boundary), {}, std::move(meshes)};
 }
 
-/// The surfaces of a list; unnamed ones are called "patch_1", ...
+template <class Keys>
+Boundary<3> surface(const Keys& keys, Meshes& meshes) {
+  return located(keys.where, [&] {
+    const auto before = static_cast<std::ptrdiff_t>(meshes.size());
+    Boundary<3> boundary = finished_solid(SurfaceBuilder{meshes}(keys), keys);
+    if (has_clip(keys)) meshes.erase(meshes.begin() + before, meshes.end());
+    return boundary;
+  });
+}
+
 template <class List>
-Boundary<3> surface_list(const List& list) {
+Boundary<3> surface_list(const List& list, Meshes& meshes) {
   Boundary<3> boundary;
   Gatherer gatherer;
   for (std::size_t i = 0; i < list.size(); ++i) {
     gatherer.run([&] {
       const auto add = [&](const auto& keys) {
-        Boundary<3> piece = surface(keys);
+        Boundary<3> piece = surface(keys, meshes);
         if (keys.name.empty()) prefix_names(piece, fmt::format("patch_{}", i + 1));
         append(boundary, piece);
       };
-      if constexpr (std::is_same_v<typename List::value_type, SurfaceKeys>) {
-        std::visit(add, list[i]);
-      } else {
+      if constexpr (std::is_base_of_v<ShapeKeys, typename List::value_type>) {
         add(list[i]);
+      } else {
+        std::visit(add, list[i]);
       }
     });
   }
   gatherer.throw_if_any();
   return boundary;
+}
+
+Boundary<3> nurbs_surfaces(const std::vector<NurbsSurfaceKeys>& list) {
+  Meshes none;
+  if (list.size() > 1) return surface_list(list, none);
+  return std::visit([&](const auto& keys) { return surface(keys, none); }, list.front());
 }
 
 // --- The whole ------------------------------------------------------------------------------------------------
@@ -412,19 +458,27 @@ struct GeometryBuilder<2> {
 
 template <>
 struct GeometryBuilder<3> {
-  BuiltBoundary<3> operator()(const NurbsKeys& keys) const {
-    return {located(keys.where, [&] { return finished_solid(surface_list(keys.patches), keys); }), {}};
-  }
-  BuiltBoundary<3> operator()(const PatchesKeys& keys) const {
-    return {located(keys.where, [&] { return finished_solid(surface_list(keys.patches), keys); }), {}};
-  }
+  BuiltBoundary<3> operator()(const NurbsKeys& keys) const { return patches(keys); }
+  BuiltBoundary<3> operator()(const PatchesKeys& keys) const { return patches(keys); }
   template <class Keys>
   BuiltBoundary<3> operator()(const Keys& keys) const {
     if constexpr (std::is_invocable_v<SurfaceBuilder, const Keys&>) {
-      return {surface(keys), {}};
+      Meshes meshes;
+      Boundary<3> boundary = surface(keys, meshes);
+      return built(std::move(boundary), keys, std::move(meshes));
     } else {
       refuse(keys.where, "found a shape of the plane; expected one of space");
     }
+  }
+
+ private:
+  template <class Keys>
+  static BuiltBoundary<3> patches(const Keys& keys) {
+    return located(keys.where, [&] {
+      Meshes meshes;
+      Boundary<3> boundary = finished_solid(surface_list(keys.patches, meshes), keys);
+      return built(std::move(boundary), keys, std::move(meshes));
+    });
   }
 };
 

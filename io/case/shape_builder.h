@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/boundary.h"
+#include "geometry/tspline/tmesh.h"
 #include "io/case/shape_keys.h"
 
 namespace isorim::io {
@@ -23,6 +24,8 @@ struct BuiltBoundary {
   /// As the case gives it: not oriented yet, patch names unique.
   geometry::Boundary<Dim> boundary;
   std::vector<LoopClaim> claims;
+  /// Of the patches that were extracted from T-splines of the case, in their order.
+  std::vector<geometry::TMesh> meshes = {};
 };
 
 using AnyBoundary = std::variant<BuiltBoundary<2>, BuiltBoundary<3>>;

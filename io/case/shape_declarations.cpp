@@ -6,37 +6,11 @@
 
 #include "io/cad/units.h"
 #include "io/case/shape_keys.h"
+#include "io/case/shape_schema.h"
 
 /// The declarations of all shapes. Help and reference print the texts that stand here.
 namespace isorim::io {
 namespace {
-
-constexpr auto required = Presence::required;
-
-/// A schema with the keys that every shape has; those of the shape itself come first.
-template <class T>
-Schema<T> with_common_keys(Schema<T> own) {
-  own.key("name", &ShapeKeys::name,
-          {.text = "Name of the patch, or the beginning of the names of the patches, in results and messages; made "
-                   "from the type if absent."})
-      .key("transform", &ShapeKeys::transform, {.text = "Moves the shape; a list is applied in its order."});
-  if constexpr (std::is_base_of_v<SolidKeys, T>) {
-    own.key(
-        "clip", &SolidKeys::clip,
-        {.text = "Cuts the closed solid, after the transform: { point, normal } takes away what lies on the side to "
-                 "which the normal points; tools of other types keep what is inside or outside. What is cut is closed "
-                 "by patches named \"cap\". A list is applied in its order."});
-  } else {
-    own.later({"clip"});
-  }
-  if constexpr (std::is_base_of_v<FaceKeys, T>) {
-    own.key(
-        "trims", &FaceKeys::trims,
-        {.text = "Loops in the surface's parameters (u, v) that bound what is kept: outer loops, holes in them, and "
-                 "so on by nesting. Holes that lie in no loop (role = \"hole\") are cut out of the whole surface."});
-  }
-  return own;
-}
 
 template <class T>
 Schema<T> with_kept_side(Schema<T> own) {
@@ -52,24 +26,6 @@ Schema<T> with_role(Schema<T> own) {
              {.text = "What the loop is meant to be. Holes are found by nesting; a role that contradicts it is an "
                       "error."});
   return own;
-}
-
-void complain_few(std::size_t found, std::size_t least, std::string_view what, const KeyPlace& where,
-                  Complaints& complaints) {
-  if (found < least) complaints.add(where, fmt::format("found {} {}; expected at least {}", found, what, least));
-}
-
-void check_dimensions(const std::vector<Coordinates>& points, std::size_t least, std::size_t most,
-                      Complaints& complaints) {
-  for (const Coordinates& point : points) {
-    const std::size_t count = point.values.size();
-    if (count < least || count > most || count != points.front().values.size()) {
-      complaints.add(point.where,
-                     fmt::format("found {} numbers; expected {}", count,
-                                 least == most ? fmt::format("{}", least)
-                                               : fmt::format("{} or {}, the same for every point", least, most)));
-    }
-  }
 }
 
 template <class T>
@@ -115,17 +71,6 @@ Schema<T> ellipse_arc_schema() {
           .key("angles", &EllipseArcKeys::angles,
                {.text = "Where the arc begins and ends, in the parametric angle t of (a cos t, b sin t).",
                 .unit = "degrees"}));
-}
-
-void check_control_points(bool has_points, bool has_homogeneous, bool has_weights, const KeyPlace& where,
-                          Complaints& complaints) {
-  if (has_points == has_homogeneous) {
-    complaints.add(where, fmt::format("found {}; expected exactly one of \"points\" and \"homogeneous\"",
-                                      has_points ? "both" : "neither"));
-  }
-  if (has_homogeneous && has_weights) {
-    complaints.add(where, "found \"weights\" beside \"homogeneous\", whose last coordinates are the weights");
-  }
 }
 
 template <class T>
@@ -662,10 +607,21 @@ const TypeTags& type_tags<PlaneRegionKeys>() {
 }
 
 template <>
-const TypeTags& type_tags<SurfaceKeys>() {
+const TypeTags& type_tags<NurbsSurfaceKeys>() {
   static const TypeTags tags{{"nurbs", "quadrilateral", "disc", "revolve", "extrude", "ruled", "loft", "sphere",
                               "ellipsoid", "torus", "cylinder", "cone", "box"},
-                             {"file", "tspline", "fit"},
+                             {"file", "fit"},
+                             "",
+                             "",
+                             {{"skin", "loft"}}};
+  return tags;
+}
+
+template <>
+const TypeTags& type_tags<SurfaceKeys>() {
+  static const TypeTags tags{{"nurbs", "quadrilateral", "disc", "revolve", "extrude", "ruled", "loft", "sphere",
+                              "ellipsoid", "torus", "cylinder", "cone", "box", "tspline"},
+                             {"file", "fit"},
                              "",
                              "",
                              {{"skin", "loft"}}};
@@ -675,9 +631,9 @@ const TypeTags& type_tags<SurfaceKeys>() {
 template <>
 const TypeTags& type_tags<GeometryKeys>() {
   static const TypeTags tags{
-      {"circle", "ellipse", "ellipse_arc", "rectangle", "polygon", "region", "nurbs", "sphere", "ellipsoid", "torus",
-       "cylinder", "cone", "box", "revolve", "extrude", "ruled", "loft", "patches", "file"},
-      {"fit", "propeller", "hull", "tspline"},
+      {"circle",   "ellipse", "ellipse_arc", "rectangle", "polygon", "region", "nurbs", "sphere",  "ellipsoid", "torus",
+       "cylinder", "cone",    "box",         "revolve",   "extrude", "ruled",  "loft",  "patches", "tspline",   "file"},
+      {"fit", "propeller", "hull"},
       "",
       "",
       {{"skin", "loft"}}};

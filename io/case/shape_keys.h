@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "geometry/intersection/clip.h"
+#include "geometry/tspline/refinement.h"
 #include "io/cad/read_cad.h"
 #include "io/case/schema.h"
 
@@ -260,8 +261,49 @@ struct NurbsPatchKeys : FaceKeys {
   PointGrid homogeneous;
 };
 
-using SurfaceKeys = std::variant<NurbsPatchKeys, QuadrilateralKeys, DiscKeys, RevolveKeys, ExtrudeKeys, RuledKeys,
-                                 LoftKeys, SphereKeys, EllipsoidKeys, TorusKeys, CylinderKeys, ConeKeys, BoxKeys>;
+/// What consists of NURBS patches.
+using NurbsSurfaceKeys = std::variant<NurbsPatchKeys, QuadrilateralKeys, DiscKeys, RevolveKeys, ExtrudeKeys, RuledKeys,
+                                      LoftKeys, SphereKeys, EllipsoidKeys, TorusKeys, CylinderKeys, ConeKeys, BoxKeys>;
+
+// --- T-splines ------------------------------------------------------------------------------------------------
+
+/// A part of a knot line.
+struct PartialLineKeys {
+  double at = 0.0;
+  double from = 0.0;
+  double to = 0.0;
+  KeyPlace where;
+};
+
+/// Which faces are bisected; all conditions that are given must hold.
+struct RefineKeys {
+  /// An expression in x, y, z.
+  std::string condition;
+  std::vector<Coordinates> box;
+  std::optional<Eigen::Vector2d> u;
+  std::optional<Eigen::Vector2d> v;
+  int levels = 1;
+  geometry::Bisection direction = geometry::Bisection::both;
+  KeyPlace where;
+};
+
+/// A T-mesh by knots and lines, or NURBS (`from`).
+struct TSplineKeys : SolidKeys {
+  OneOrMany<NurbsSurfaceKeys> from;
+  std::optional<Eigen::Vector2i> degrees;
+  std::vector<double> knots_u;
+  std::vector<double> knots_v;
+  std::vector<PartialLineKeys> lines_u;
+  std::vector<PartialLineKeys> lines_v;
+  std::vector<Coordinates> points;
+  std::vector<double> weights;
+  std::vector<Coordinates> homogeneous;
+  OneOrMany<RefineKeys> refine;
+};
+
+using SurfaceKeys =
+    std::variant<NurbsPatchKeys, QuadrilateralKeys, DiscKeys, RevolveKeys, ExtrudeKeys, RuledKeys, LoftKeys, SphereKeys,
+                 EllipsoidKeys, TorusKeys, CylinderKeys, ConeKeys, BoxKeys, TSplineKeys>;
 
 struct PatchesKeys : SolidKeys {
   std::vector<SurfaceKeys> patches;
@@ -290,6 +332,6 @@ struct FileKeys : SolidKeys {
 
 using GeometryKeys = std::variant<CircleKeys, EllipseKeys, EllipseArcKeys, RectangleKeys, PolygonKeys, RegionKeys,
                                   NurbsKeys, SphereKeys, EllipsoidKeys, TorusKeys, CylinderKeys, ConeKeys, BoxKeys,
-                                  RevolveKeys, ExtrudeKeys, RuledKeys, LoftKeys, PatchesKeys, FileKeys>;
+                                  RevolveKeys, ExtrudeKeys, RuledKeys, LoftKeys, PatchesKeys, TSplineKeys, FileKeys>;
 
 }  // namespace isorim::io

@@ -33,6 +33,7 @@ void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io
   if (output.vtk) io::write_boundary_vtu(folder / "boundary.vtu", model);
   if (output.vtk && io::has_edges(model)) io::write_edges_vtu(folder / "edges.vtu", model);
   if (output.svg) io::write_boundary_svg(folder / "boundary.svg", report.title, model);
+  if (output.svg) io::write_tmesh_svgs(folder, file.shape);
   if (file.keys.convergence) {
     io::write_convergence_csv(folder / "convergence.csv", study);
     io::write_convergence_svg(folder / "convergence.svg", report.title, study);

@@ -1,13 +1,16 @@
 #include "io/results/pictures.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
+#include <string>
 #include <variant>
 #include <vector>
 
 #include "geometry/topology/shape_loops.h"
 #include "geometry/trimming/lifted_curve.h"
 #include "io/svg/drawing.h"
+#include "io/svg/tmesh_drawing.h"
 #include "io/vtk/bezier_writer.h"
 
 namespace isorim::io {
@@ -60,6 +63,19 @@ void write_boundary_svg(const std::filesystem::path& path, const std::string& ti
   if (!plane) return;
   const svg::Drawing drawing{.title = title, .chains = svg::chains(plane->oriented), .x_label = "x", .y_label = "y"};
   svg::write_svg(path, drawing);
+}
+
+void write_tmesh_svgs(const std::filesystem::path& folder, const AnyBoundary& shape) {
+  const auto* solid = std::get_if<BuiltBoundary<3>>(&shape);
+  if (!solid || solid->meshes.empty()) return;
+  auto mesh = solid->meshes.begin();
+  for (const auto& patch : solid->boundary.patches) {
+    if (!std::holds_alternative<geometry::ExtractedSurface>(patch.shape)) continue;
+    std::string name = patch.name;
+    std::ranges::replace_if(
+        name, [](unsigned char c) { return c < 128 && std::isalnum(c) == 0 && c != '-'; }, '_');
+    svg::write_svg(folder / ("tmesh_" + name + ".svg"), *mesh++, "T-mesh of " + patch.name);
+  }
 }
 
 bool has_free_edges(const AnyModel& model) {

@@ -15,6 +15,10 @@ void write_boundary_vtu(const std::filesystem::path& path, const AnyModel& model
 /// A picture of a region of the plane; nothing for a solid.
 void write_boundary_svg(const std::filesystem::path& path, const std::string& title, const AnyModel& model);
 
+/// "tmesh_<patch>.svg" in the folder for each T-spline of the case; what is neither letter, digit nor "-" in the
+/// patch's name becomes "_".
+void write_tmesh_svgs(const std::filesystem::path& folder, const AnyBoundary& shape);
+
 /// Whether a solid's boundary has edges that nothing continues.
 bool has_free_edges(const AnyModel& model);
 

@@ -182,6 +182,38 @@ const std::vector<ShapeCase> space{
      4 - pi / 4 + 2 * 1 + 2 + 1 + pi / 2,
      2 - pi / 8,
      {-(1 - 1.0 / 12) / (2 - pi / 8), 0, 0.5}},
+    {"TSplineOfASolid",
+     "type = 'tspline'\nfrom = { type = 'torus', major_radius = 2, minor_radius = 1 }\nrefine = [{ where = 'x > 1 && "
+     "y > 0' }, { u = [0.3, 0.6], v = [0.2, 0.3], levels = 2, direction = 'v' }, { box = [[0, 0, 0], [1, 1, 1]] }]\n"
+     "transform = { translate = [1, 0, 0] }",
+     8 * pi* pi,
+     4 * pi* pi,
+     {1, 0, 0}},
+    {"TSplinesOfAList",
+     "type = 'tspline'\ndegrees = [3, 3]\nrefine = { where = 'z > 0.9', levels = 2 }\nfrom = [{ type = 'disc', radius "
+     "= 1 }, { type = 'disc', radius = 1, centre = [0, 0, 1] }, { type = 'extrude', profile = [{ type = 'circle', "
+     "radius = 1 }], vector = [0, 0, 1] }]",
+     4 * pi,
+     pi,
+     {0, 0, 0.5}},
+    {"TSplineByItsMesh",
+     // The top of a box of 3 x 3 x 1: bilinear, so its control points are the vertices of the T-mesh.
+     "type = 'patches'\npatches = [{ type = 'tspline', degrees = [1, 1], knots_u = [0, 0, 1, 2, 3, 3], knots_v = [0, "
+     "0, "
+     "1, 2, 3, 3], lines_v = [{ at = 1, from = 1, to = 3 }], homogeneous = [[0, 0, 1, 1], [1, 0, 1, 1], [2, 0, 1, 1], "
+     "[3, 0, 1, 1], [1, 1, 1, 1], [2, 1, 1, 1], [3, 1, 1, 1], [0, 2, 1, 1], [1, 2, 1, 1], [2, 2, 1, 1], [3, 2, 1, 1], "
+     "[0, 3, 1, 1], [1, 3, 1, 1], [2, 3, 1, 1], [3, 3, 1, 1]], refine = { levels = 1 } },"
+     "{ type = 'quadrilateral', corners = [[0,0,0], [3,0,0], [3,3,0], [0,3,0]] },"
+     "{ type = 'extrude', profile = [{ type = 'rectangle', size = [3, 3] }], vector = [0, 0, 1] }]",
+     30,
+     9,
+     {1.5, 1.5, 0.5}},
+    {"TSplineThatIsCut",
+     "type = 'tspline'\nfrom = { type = 'sphere', radius = 1 }\nrefine = { where = 'x > 0' }\nclip = { normal = [0, 0, "
+     "1] }",
+     3 * pi,
+     2 * pi / 3,
+     {0, 0, -0.375}},
 };
 
 std::string shape_name(const ::testing::TestParamInfo<ShapeCase>& info) {

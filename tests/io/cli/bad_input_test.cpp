@@ -299,6 +299,54 @@ const std::vector<BadCase> cuts{
      {"geometry.patches[1].trims[2]: the role is \"outer\", but the loop lies inside another one"}},
 };
 
+/// Bilinear on [0, 3] x [0, 3], with more keys.
+std::string tspline(const std::string& more) {
+  return "[geometry]\ntype = 'tspline'\ndegrees = [1, 1]\nknots_u = [0, 0, 1, 2, 3, 3]\nknots_v = [0, 0, 3, 3]\n"
+         "points = [[0,0,0], [1,0,0], [2,0,0], [3,0,0], [0,3,0], [1,3,0], [2,3,0], [3,3,0]]\n" +
+         more + "\n";
+}
+
+const std::vector<BadCase> tsplines{
+    {"TSplineOfNothing",
+     "[geometry]\ntype = 'tspline'\n",
+     {"case.toml:1: geometry: the key \"degrees\" is missing", "found no \"from\", and \"knots_u\" or \"knots_v\""}},
+    {"TSplineTwice",
+     tspline("from = { type = 'sphere', radius = 1 }"),
+     {"case.toml:1: geometry: found \"from\" beside a T-mesh"}},
+    {"TSplineWithTooFewPoints",
+     "[geometry]\ntype = 'tspline'\ndegrees = [1, 1]\nknots_u = [0, 0, 1, 1]\nknots_v = [0, 0, 1, 1]\n"
+     "points = [[0,0,0], [1,0,0], [0,1,0]]\n",
+     {"geometry: T-spline: 3 control points given; the T-mesh has 4 anchors"}},
+    {"TSplineWithBadKnots",
+     "[geometry]\ntype = 'tspline'\ndegrees = [1, 1]\nknots_u = [0, 0, 1, 1]\nknots_v = [0, 0, 2, 1]\n"
+     "points = [[0,0,0], [1,0,0], [0,1,0], [1,1,0]]\n",
+     {"geometry.knots_v: knot vector: "}},
+    {"LineAtNoKnot",
+     tspline("lines_u = [{ at = 1.5, from = 0, to = 3 }]"),
+     {"T-mesh: a line u is drawn at 1.5, which is no knot between 0 and 3"}},
+    {"LineWithoutAnEnd",
+     tspline("lines_u = [{ at = 1, from = 0 }]"),
+     {"case.toml:7: geometry.lines_u[1]: the key \"to\" (real) is missing"}},
+    {"TSplineOfATrimmedFace",
+     "[geometry]\ntype = 'tspline'\nfrom = { type = 'quadrilateral', corners = [[0,0,0], [1,0,0], [1,1,0], [0,1,0]], "
+     "trims = [{ type = 'circle', radius = 0.2, centre = [0.5, 0.5] }] }\n",
+     {"geometry.from: the patch \"quadrilateral\" is trimmed; only whole surfaces become T-splines"}},
+    {"RefineByAnUnknownVariable",
+     tspline("refine = { where = 'u > 1' }"),
+     {"geometry.refine.where: at character 1: found the unknown name \"u\"; expected x, y, z"}},
+    {"RefineByABoxOfOneCorner",
+     tspline("refine = { box = [[0, 0, 0]] }"),
+     {"geometry.refine: found a box of 1 corners; expected 2"}},
+    {"RefineByAFallingRange", tspline("refine = { u = [2, 1] }"), {"geometry.refine: found u = [2, 1]"}},
+    {"RefineOfAnUnsuitableMesh",
+     // Both lines end before the empty middle of the mesh.
+     "[geometry]\ntype = 'tspline'\ndegrees = [1, 1]\nknots_u = [0, 0, 1, 2, 3, 3]\nknots_v = [0, 0, 1, 2, 3, 4, 4]\n"
+     "lines_u = [{ at = 2, from = 3, to = 4 }]\nlines_v = [{ at = 2, from = 0, to = 1 }]\n"
+     "points = [[0,0,0], [1,0,0], [3,0,0], [0,1,0], [1,1,0], [3,1,0], [0,2,0], [1,2,0], [0,3,0], [1,3,0], [2,3,0], "
+     "[3,3,0], [0,4,0], [1,4,0], [2,4,0], [3,4,0]]\nrefine = { levels = 1 }\n",
+     {"geometry.refine: T-mesh: it is not analysis-suitable", "the T-junctions at (u, v) = (1, 2) and (2, 3) meet"}},
+};
+
 const std::vector<BadCase> quantities{
     {"IntegrandThatDoesNotParse",
      circle + "[[integral]]\nname = 'a'\nintegrand = 'x + * y'\n",
@@ -371,6 +419,7 @@ INSTANTIATE_TEST_SUITE_P(Types, BadInput, ::testing::ValuesIn(types), case_name)
 INSTANTIATE_TEST_SUITE_P(Ranges, BadInput, ::testing::ValuesIn(ranges), case_name);
 INSTANTIATE_TEST_SUITE_P(Shapes, BadInput, ::testing::ValuesIn(shapes), case_name);
 INSTANTIATE_TEST_SUITE_P(Cuts, BadInput, ::testing::ValuesIn(cuts), case_name);
+INSTANTIATE_TEST_SUITE_P(TSplines, BadInput, ::testing::ValuesIn(tsplines), case_name);
 INSTANTIATE_TEST_SUITE_P(Quantities, BadInput, ::testing::ValuesIn(quantities), case_name);
 
 class SeveralFaults : public ProgramTest {};
