@@ -44,19 +44,28 @@ IndexMesh::IndexMesh(std::array<int, 2> degrees, std::array<int, 2> line_counts,
                                       line_counts[d], "uv"[d], degrees[d], 2 * (degrees[d] + 1)));
   face_of_cell_.assign(static_cast<std::size_t>(cells(Direction::u)) * static_cast<std::size_t>(cells(Direction::v)),
                        -1);
-  const IndexBox whole = domain();
   for (std::size_t k = 0; k < merged.size(); ++k) {
-    require_inside(merged[k], whole, k);
-    for (int j = merged[k].first[1]; j < merged[k].last[1]; ++j) {
-      for (int i = merged[k].first[0]; i < merged[k].last[0]; ++i) {
-        std::int32_t& face = face_of(i, j);
-        if (face >= 0)
-          throw GeometryError(fmt::format("T-mesh: faces {} and {} overlap: {}; {}", face, k,
-                                          describe(merged[static_cast<std::size_t>(face)]), describe(merged[k])));
-        face = static_cast<std::int32_t>(k);
-      }
+    require_inside(merged[k], domain(), k);
+    claim_cells(merged, k);
+  }
+  gather_faces(merged);
+  number_cells();
+}
+
+void IndexMesh::claim_cells(std::span<const IndexBox> merged, std::size_t k) {
+  for (int j = merged[k].first[1]; j < merged[k].last[1]; ++j) {
+    for (int i = merged[k].first[0]; i < merged[k].last[0]; ++i) {
+      std::int32_t& face = face_of(i, j);
+      if (face >= 0)
+        throw GeometryError(fmt::format("T-mesh: faces {} and {} overlap: {}; {}", face, k,
+                                        describe(merged[static_cast<std::size_t>(face)]), describe(merged[k])));
+      face = static_cast<std::int32_t>(k);
     }
   }
+}
+
+void IndexMesh::gather_faces(std::span<const IndexBox> merged) {
+  const IndexBox whole = domain();
   for (int j = whole.first[1]; j < whole.last[1]; ++j) {
     for (int i = whole.first[0]; i < whole.last[0]; ++i) {
       const std::int32_t face = face_of(i, j);
@@ -67,7 +76,6 @@ IndexMesh::IndexMesh(std::array<int, 2> degrees, std::array<int, 2> line_counts,
       }
     }
   }
-  number_cells();
 }
 
 IndexBox IndexMesh::domain() const {

@@ -113,6 +113,10 @@ class IndexMesh {
  private:
   int cells(Direction d) const { return line_counts_[index(d)] - 1 - 2 * degrees_[index(d)]; }
   std::int32_t& face_of(int i, int j);
+  /// Gives the cells of the k-th box its number; throws if another one has them.
+  void claim_cells(std::span<const IndexBox> merged, std::size_t k);
+  /// The boxes and single cells, from their lower corners.
+  void gather_faces(std::span<const IndexBox> merged);
   void number_cells();
 
   std::array<int, 2> degrees_;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
+#include "geometry/errors.h"
 #include "geometry/tspline/refinement.h"
 #include "geometry/tspline/tmesh.h"
 #include "tests/geometry/random_splines.h"
