@@ -13,6 +13,7 @@
 #include "geometry/vocabulary.h"
 #include "quadrature/rim.h"
 #include "solver/bem/domain_load.h"
+#include "solver/bem/field_space.h"
 #include "solver/bem/kernels.h"
 
 namespace isorim::solver {
@@ -29,7 +30,9 @@ enum class ConditionKind {
   value,
   /// t = value: k du/dn or the traction, n out of the body, in exterior problems too.
   flux,
-  /// t = coefficient (reference - u): convection, elastic foundation. `value` is the reference.
+  /// t = coefficient (reference - u): convection, elastic foundation. `value` is the reference. In exterior problems
+  /// t = coefficient (u - reference): it is always the flux or force into the domain that is coefficient (reference -
+  /// u).
   robin,
 };
 
@@ -69,5 +72,30 @@ struct Problem {
   /// Sources or body forces; their sum acts.
   Loads<Dim> loads;
 };
+
+/// 1 for a potential, Dim for a displacement.
+template <int Dim>
+int component_count(const Equation<Dim>& equation);
+
+/// The axis of a component in x, y, z; the number 1 in the first place for a potential.
+template <int Dim>
+geometry::Vector<Dim> component_axis(const Condition<Dim>& condition, int component) {
+  if (condition.frame) return condition.frame->row(component).transpose();
+  return geometry::Vector<Dim>::Unit(component);
+}
+
+/// A unit of length for the logarithm in the plane's fundamental solutions: the diagonal of the boundary's bounding
+/// box. The equation and the loads have to be given the same one. Any other length above the radius of a circle around
+/// the boundary would do as well: there is no degenerate scale then (the single layer is positive on constants too).
+template <int Dim>
+double logarithm_length(const geometry::ElementTable<Dim>& table);
+
+/// Throws InputError, naming condition, component or element and what was expected, for: no conditions, or not one for
+/// every element; a wrong number of components; a frame that is not orthonormal; robin without a coefficient; a
+/// coefficient that nothing uses; material constants out of range (conductivity, shear modulus, Poisson's ratio in
+/// (-1, 1/2)); a logarithm's length below half the diagonal of the bounding box; loads in an exterior problem; a
+/// function of the space that lives under two conditions.
+template <int Dim>
+void check_problem(const Problem<Dim>& problem, const FieldSpace<Dim>& space);
 
 }  // namespace isorim::solver

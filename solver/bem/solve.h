@@ -37,6 +37,9 @@ struct Solution {
   /// prescribed function itself.
   Eigen::MatrixXd potential;
   Eigen::MatrixXd flux;
+  /// What the field tends to far from the body, one number a component: an unknown of exterior problems in the plane.
+  /// Zero where it is known to vanish (in space, or if nothing fixes it).
+  Eigen::VectorXd at_infinity;
 
   std::size_t unknowns = 0;
   /// "dense" or "compressed".

@@ -1,0 +1,65 @@
+#include "solver/bem/solve.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "quadrature/target_rules.h"
+#include "solver/bem/assembly.h"
+#include "solver/bem/coefficients.h"
+#include "solver/bem/dense_system.h"
+#include "solver/bem/side_conditions.h"
+
+namespace isorim::solver {
+
+namespace {
+
+template <int Dim>
+int highest_degree(const FieldSpace<Dim>& space) {
+  int highest = 1;
+  for (const FieldElement<Dim>& element : space.elements) {
+    for (const std::int8_t degree : element.degree) highest = std::max<int>(highest, degree);
+  }
+  return highest;
+}
+
+template <int Dim>
+Eigen::VectorXd constant_at_infinity(const SideConditions<Dim>& sides, const Eigen::VectorXd& extra, int components) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(components);
+  for (std::size_t k = 0; k < sides.constants.size(); ++k)
+    sum += extra[static_cast<Eigen::Index>(k)] * sides.constants[k].head(components);
+  return sum;
+}
+
+}  // namespace
+
+template <int Dim>
+Solution<Dim> solve(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const SolveOptions& options) {
+  check_problem(problem, space);
+  typename quadrature::TargetRules<Dim>::Options rule_options;
+  rule_options.tolerance = options.tolerance;
+  rule_options.field_degree = highest_degree(space);
+  const quadrature::TargetRules<Dim> rules(space.table, rule_options);
+  const double flux_scale = Assembler<Dim>(problem, space, rules, {}).flux_scale();
+  const SideConditions<Dim> sides = side_conditions(problem, space, rules, flux_scale, options.threads);
+  const Assembler<Dim> assembler(problem, space, rules, sides.flux_modes);
+  const DenseSystem system = assemble_dense(assembler, sides, options);
+  const DenseSolution found = solve_dense(system, options.threads);
+  FieldCoefficients coefficients = field_coefficients(assembler, found.values.head(assembler.size()));
+
+  Solution<Dim> solution;
+  solution.potential = std::move(coefficients.potential);
+  solution.flux = std::move(coefficients.flux);
+  solution.at_infinity =
+      constant_at_infinity(sides, found.values.tail(system.matrix.rows() - assembler.size()), assembler.components());
+  solution.unknowns = static_cast<std::size_t>(system.matrix.rows());
+  solution.method = "dense";
+  solution.residual = found.residual;
+  solution.matrix_memory = static_cast<std::size_t>(system.matrix.size()) * sizeof(double);
+  solution.messages = sides.messages;
+  return solution;
+}
+
+template Solution<2> solve<2>(const Problem<2>&, const FieldSpace<2>&, const SolveOptions&);
+template Solution<3> solve<3>(const Problem<3>&, const FieldSpace<3>&, const SolveOptions&);
+
+}  // namespace isorim::solver
