@@ -36,7 +36,8 @@ std::string describe_content(const CadModel& model) {
   for (const EntityCount& entity : model.entities) {
     entities.push_back(fmt::format("{} x {} ({})", entity.count, entity.type, entity.description));
   }
-  return fmt::format("found {}, {} and {}{}", counted(model.faces.size(), "face", "faces"),
+  return fmt::format("found {}, {}{} and {}{}", counted(model.faces.size(), "face", "faces"),
+                     model.t_splines.empty() ? "" : counted(model.t_splines.size(), "T-spline, ", "T-splines, "),
                      counted(model.curves.size(), "curve", "curves"), counted(model.points.size(), "point", "points"),
                      entities.empty() ? "" : fmt::format("; entities: {}", fmt::join(entities, ", ")));
 }
@@ -46,11 +47,19 @@ int count_solids(const CadModel& model) {
   for (const CadFace& face : model.faces) {
     if (face.solid >= 0) solids.insert(face.solid);
   }
+  for (const CadTSpline& t_spline : model.t_splines) {
+    if (t_spline.solid >= 0) solids.insert(t_spline.solid);
+  }
   return static_cast<int>(solids.size());
 }
 
 double unit_scale(const CadModel& model, const std::string& unit) {
   if (unit.empty() || unit == model.unit) return 1.0;
+  if (model.unit.empty())
+    throw InputError(
+        fmt::format("{} files know no units; \"units\" cannot convert them into {}: scale them by a "
+                    "transform",
+                    model.format, unit));
   const std::optional<double> millimetres = unit_in_millimetres(unit);
   if (!millimetres) throw InputError(fmt::format("found the unit \"{}\"; expected one that is known", unit));
   return model.unit_in_millimetres / *millimetres;
@@ -64,7 +73,7 @@ CadFacts facts_of(const CadModel& model, const AssemblyOptions& options) {
   facts.file_unit = model.unit;
   facts.unit = options.unit.empty() ? model.unit : options.unit;
   facts.scale = unit_scale(model, options.unit);
-  facts.faces = static_cast<int>(model.faces.size());
+  facts.faces = static_cast<int>(model.faces.size() + model.t_splines.size());
   facts.solids = count_solids(model);
   facts.curves = static_cast<int>(model.curves.size());
   facts.points = static_cast<int>(model.points.size());
@@ -143,9 +152,8 @@ struct FaceOutcome {
 };
 
 std::vector<FaceOutcome> assemble_faces(const CadModel& model, const std::vector<std::size_t>& which, double scale,
-                                        int threads) {
+                                        int threads, UniqueNames& names) {
   std::vector<FaceOutcome> outcomes(which.size());
-  UniqueNames names;
   for (std::size_t i = 0; i < which.size(); ++i) {
     outcomes[i].source = &model.faces[which[i]];
     outcomes[i].name = names.make(wanted_name(outcomes[i].source->origin, "face", which[i]));
@@ -172,14 +180,34 @@ PatchOrigin origin_of(const FaceOutcome& outcome) {
   return {outcome.source->origin, outcome.source->solid, outcome.face->repairs, outcome.face->edges};
 }
 
+bool has_faces(const CadModel& model) {
+  return !model.faces.empty() || !model.t_splines.empty();
+}
+
+void append_t_spline(const CadModel& model, std::size_t index, UniqueNames& names, Boundary<3>& boundary,
+                     CadFacts& facts) {
+  const CadTSpline& t_spline = model.t_splines[index];
+  const std::string wanted = t_spline.origin.name.empty() && model.t_splines.size() == 1
+                                 ? "t_spline"
+                                 : wanted_name(t_spline.origin, "t_spline", index);
+  const geometry::AffineMap<3> to_unit = geometry::scaling<3>(Vector3::Constant(facts.scale));
+  boundary.patches.push_back(
+      {names.make(wanted), facts.scale == 1.0 ? t_spline.surface : transform(t_spline.surface, to_unit)});
+  facts.patches.push_back({t_spline.origin, t_spline.solid, {}, {}});
+}
+
 AssembledModel solid_boundary(const CadModel& model, const AssemblyOptions& options, CadFacts facts) {
   Boundary<3> boundary;
-  if (model.faces.empty()) {
+  if (!has_faces(model)) {
     throw InputError(fmt::format("{}; expected faces to make a boundary in space of", describe_content(model)));
   }
   const std::vector<std::size_t> which = selected(model.faces, options);
-  if (which.empty()) throw InputError(fmt::format("no face is selected; {}", describe_choice(model.faces)));
-  for (FaceOutcome& outcome : assemble_faces(model, which, facts.scale, options.threads)) {
+  const std::vector<std::size_t> t_splines = selected(model.t_splines, options);
+  if (which.empty() && t_splines.empty())
+    throw InputError(fmt::format("no face is selected; {}", model.faces.empty() ? describe_choice(model.t_splines)
+                                                                                : describe_choice(model.faces)));
+  UniqueNames names;
+  for (FaceOutcome& outcome : assemble_faces(model, which, facts.scale, options.threads, names)) {
     if (!outcome.face) {
       refuse(outcome, outcome.refusal, facts);
       continue;
@@ -187,6 +215,7 @@ AssembledModel solid_boundary(const CadModel& model, const AssemblyOptions& opti
     facts.patches.push_back(origin_of(outcome));
     boundary.patches.push_back({outcome.name, std::move(outcome.face->shape)});
   }
+  for (const std::size_t index : t_splines) append_t_spline(model, index, names, boundary, facts);
   if (is_flat(boundary, flatness_tolerance)) {
     facts.warnings.emplace_back("all faces lie in one plane: with dimension = 2 they are a region of the plane");
   }
@@ -216,7 +245,8 @@ struct Drawing {
 Drawing face_edges(const CadModel& model, const std::vector<std::size_t>& which, const AssemblyOptions& options,
                    CadFacts& facts) {
   Drawing drawing;
-  for (const FaceOutcome& outcome : assemble_faces(model, which, facts.scale, options.threads)) {
+  UniqueNames names;
+  for (const FaceOutcome& outcome : assemble_faces(model, which, facts.scale, options.threads, names)) {
     try {
       if (!outcome.face) throw GeometryError(outcome.refusal);
       std::vector<NurbsCurve<3>> edges = flat_face_edges(outcome.face->shape);
@@ -296,10 +326,10 @@ AssembledModel plane_boundary(const CadModel& model, const AssemblyOptions& opti
 }  // namespace
 
 AssembledModel assemble(const CadModel& model, const AssemblyOptions& options) {
-  if (model.faces.empty() && model.curves.empty()) {
+  if (!has_faces(model) && model.curves.empty()) {
     throw InputError(fmt::format("{}; expected surfaces or curves", describe_content(model)));
   }
-  const int dimension = options.dimension.value_or(model.faces.empty() ? 2 : 3);
+  const int dimension = options.dimension.value_or(has_faces(model) ? 3 : 2);
   CadFacts facts = facts_of(model, options);
   return dimension == 2 ? plane_boundary(model, options, std::move(facts))
                         : solid_boundary(model, options, std::move(facts));

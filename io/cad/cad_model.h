@@ -7,6 +7,7 @@
 
 #include "geometry/nurbs/curve.h"
 #include "geometry/trimming/loose_face.h"
+#include "geometry/tspline/extracted_surface.h"
 
 /// What a CAD file holds, whichever format it has, before anything is matched, closed or oriented.
 namespace isorim::io {
@@ -29,6 +30,14 @@ struct CadFace {
   geometry::LooseFace face;
   CadOrigin origin;
   /// Index of the solid whose shell it belongs to; -1 for a loose face.
+  int solid = -1;
+};
+
+/// A surface that the file gives by its Bézier extraction.
+struct CadTSpline {
+  geometry::ExtractedSurface surface;
+  CadOrigin origin;
+  /// As in CadFace.
   int solid = -1;
 };
 
@@ -62,13 +71,15 @@ struct CadModel {
   std::string format;
   /// Which reader made it: "isorim" or "OpenCASCADE 7.6.3".
   std::string reader;
-  /// The file's unit: "mm", "in", ... and its length in millimetres. Coordinates are in this unit.
+  /// The file's unit: "mm", "in", ... and its length in millimetres. Coordinates are in this unit. Empty if the format
+  /// knows no units.
   std::string unit = "mm";
   double unit_in_millimetres = 1.0;
   /// The program that wrote the file, as it calls itself; empty if unknown.
   std::string author;
   /// In the order of the file, placed where the file's transformations put them.
   std::vector<CadFace> faces;
+  std::vector<CadTSpline> t_splines;
   std::vector<CadCurve> curves;
   std::vector<geometry::Point3> points;
   std::vector<EntityCount> entities;

@@ -12,6 +12,9 @@
 #include "geometry/errors.h"
 #include "io/iges/reader.h"
 #include "io/occt/occt_reader.h"
+#include "io/tspline/be.h"
+#include "io/tspline/bext.h"
+#include "io/tspline/iga.h"
 
 namespace isorim::io {
 namespace {
@@ -21,8 +24,13 @@ struct Extension {
   CadFormat format;
 };
 
-constexpr std::array<Extension, 4> extensions{
-    {{".igs", CadFormat::iges}, {".iges", CadFormat::iges}, {".stp", CadFormat::step}, {".step", CadFormat::step}}};
+constexpr std::array<Extension, 7> extensions{{{".igs", CadFormat::iges},
+                                               {".iges", CadFormat::iges},
+                                               {".stp", CadFormat::step},
+                                               {".step", CadFormat::step},
+                                               {".iga", CadFormat::iga},
+                                               {".be", CadFormat::be},
+                                               {".json", CadFormat::bext}}};
 
 std::optional<CadFormat> format_of_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -65,6 +73,13 @@ std::optional<CadFormat> format_of_content(const std::string& text) {
   return std::nullopt;
 }
 
+/// With its article, for messages.
+std::string_view name_of(CadFormat format) {
+  constexpr std::array<std::string_view, 5> names{"an IGES file", "a STEP file", "an .iga file", "a .be file",
+                                                  "a BEXT file"};
+  return names[static_cast<std::size_t>(format)];
+}
+
 }  // namespace
 
 std::optional<CadFormat> cad_format(const std::filesystem::path& path) {
@@ -76,8 +91,12 @@ bool has_cad_extension(const std::filesystem::path& path) {
   return format_of_extension(path).has_value();
 }
 
+bool has_units(CadFormat format) {
+  return format == CadFormat::iges || format == CadFormat::step;
+}
+
 std::string cad_formats() {
-  return "IGES (.igs, .iges), STEP (.stp, .step)";
+  return "IGES (.igs, .iges), STEP (.stp, .step), T-splines (.iga, .be, BEXT as .json)";
 }
 
 CadModel read_cad(const std::filesystem::path& path, const CadOptions& options) {
@@ -85,10 +104,12 @@ CadModel read_cad(const std::filesystem::path& path, const CadOptions& options) 
   if (!format) {
     throw InputError(fmt::format("{}: found no format that is known; expected {}", path.string(), cad_formats()));
   }
-  if (*format == CadFormat::step) {
-    if (options.repair) throw InputError(fmt::format("{}: found a STEP file; repair is for IGES files", path.string()));
-    return read_step(path);
-  }
+  if (options.repair && *format != CadFormat::iges)
+    throw InputError(fmt::format("{}: found {}; repair is for IGES files", path.string(), name_of(*format)));
+  if (*format == CadFormat::step) return read_step(path);
+  if (*format == CadFormat::iga) return tspline::read_iga(path);
+  if (*format == CadFormat::be) return tspline::read_be(path);
+  if (*format == CadFormat::bext) return tspline::read_bext(path);
   if (options.repair) return read_iges_repaired(path, *options.repair);
   IgesOptions iges;
   iges.include_blanked = options.blanked == BlankedEntities::include;

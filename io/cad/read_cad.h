@@ -8,16 +8,20 @@
 
 namespace isorim::io {
 
-enum class CadFormat { iges, step };
+enum class CadFormat { iges, step, iga, be, bext };
 
 /// The format of a file: by its content, then by its extension. Empty if neither tells. Throws InputError if the file
 /// cannot be read.
 std::optional<CadFormat> cad_format(const std::filesystem::path& path);
 
-/// Whether the name ends like that of a CAD file (.igs, .iges, .stp, .step, in any case).
+/// Whether the name ends like that of a CAD file (.igs, .iges, .stp, .step, .iga, .be, .json, in any case).
 bool has_cad_extension(const std::filesystem::path& path);
 
-/// The formats that read_cad() knows, for messages: "IGES (.igs, .iges), STEP (.stp, .step)".
+/// Whether files of the format say in which unit their lengths are.
+bool has_units(CadFormat format);
+
+/// The formats that read_cad() knows, for messages: "IGES (.igs, .iges), STEP
+/// (.stp, .step), ...".
 std::string cad_formats();
 
 /// What is switched off in the program that wrote the file.
@@ -39,8 +43,8 @@ struct CadOptions {
 };
 
 /// Reads a CAD file of any format that we know: IGES by ourselves unless repair is asked for, STEP by OpenCASCADE where
-/// that is built in (CadModel::reader tells). Throws InputError, naming the file and the line or entity, if it cannot
-/// be read or is of no known format.
+/// that is built in (CadModel::reader tells), T-splines (.iga, .be, BEXT as .json) by ourselves. Throws InputError,
+/// naming the file and the line or entity, if it cannot be read or is of no known format.
 CadModel read_cad(const std::filesystem::path& path, const CadOptions& options = {});
 
 }  // namespace isorim::io

@@ -2,6 +2,7 @@
 #include <array>
 #include <cctype>
 #include <cstddef>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <system_error>
@@ -11,18 +12,24 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "geometry/tspline/extraction.h"
+#include "io/cad/read_cad.h"
 #include "io/cli/commands.h"
 #include "io/iges/writer.h"
 #include "io/results/compute.h"
 #include "io/results/pictures.h"
+#include "io/tspline/iga.h"
 
 namespace isorim::cli {
 namespace {
 
-enum class Format { iges, vtu, svg };
+enum class Format { iges, iga, vtu, svg };
 
-constexpr std::array<std::pair<const char*, Format>, 4> extensions{
-    {{".igs", Format::iges}, {".iges", Format::iges}, {".vtu", Format::vtu}, {".svg", Format::svg}}};
+constexpr std::array<std::pair<const char*, Format>, 5> extensions{{{".igs", Format::iges},
+                                                                    {".iges", Format::iges},
+                                                                    {".iga", Format::iga},
+                                                                    {".vtu", Format::vtu},
+                                                                    {".svg", Format::svg}}};
 
 Format format_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -31,8 +38,9 @@ Format format_of(const std::filesystem::path& path) {
   for (const auto& [known, format] : extensions) {
     if (extension == known) return format;
   }
-  throw InputError(fmt::format("cannot write '{}': found the extension \"{}\", expected one of .igs, .iges, .vtu, .svg",
-                               path.string(), path.extension().string()));
+  throw InputError(
+      fmt::format("cannot write '{}': found the extension \"{}\", expected one of .igs, .iges, .iga, .vtu, .svg",
+                  path.string(), path.extension().string()));
 }
 
 void require_different_files(const ConvertArguments& arguments) {
@@ -70,7 +78,7 @@ std::string write_iges(const ConvertArguments& arguments, const io::CaseFile& fi
   io::iges::WriterOptions options;
   options.form = arguments.faces == FaceForm::loose ? io::iges::Form::faces : io::iges::Form::solids;
   options.title = file.title();
-  options.unit = file.cad ? file.cad->unit : arguments.unit.value_or("mm");
+  options.unit = file.cad && !file.cad->unit.empty() ? file.cad->unit : arguments.unit.value_or("mm");
   const io::iges::WriterReport report = std::visit(
       [&](const auto& known) {
         options.looks = looks_of(known.origins, known.oriented.boundary.patches.size());
@@ -78,6 +86,22 @@ std::string write_iges(const ConvertArguments& arguments, const io::CaseFile& fi
       },
       model);
   return fmt::format("{}, unit {}", report_text(report), options.unit);
+}
+
+/// All patches as one file; they keep no names there.
+std::string write_iga(const ConvertArguments& arguments, const io::CaseFile& file, const io::AnyModel& model) {
+  const auto* solid = std::get_if<io::Model<3>>(&model);
+  if (!solid)
+    throw InputError(
+        fmt::format("{}: an .iga file holds surfaces, and this is a shape of the plane", arguments.input.string()));
+  try {
+    const geometry::ExtractedSurface surface = geometry::extracted_surface(solid->oriented.boundary);
+    io::tspline::write_iga(arguments.output, surface, file.title() + ", written by isorim");
+    return fmt::format("{} elements, {} functions", surface.elements().size(), surface.function_count());
+  } catch (GeometryError& error) {
+    error.add_context(arguments.input.string());
+    throw;
+  }
 }
 
 std::string write_svg(const ConvertArguments& arguments, const io::CaseFile& file, const io::AnyModel& model) {
@@ -94,13 +118,18 @@ std::string write_vtu(const ConvertArguments& arguments, const io::AnyModel& mod
   return fmt::format("{} elements", io::summarise(model).elements);
 }
 
-/// The case or CAD file; the lengths of the latter are converted into the unit that is asked for.
+bool tells_unit(const std::filesystem::path& path) {
+  if (!io::has_cad_extension(path)) return false;
+  const std::optional<io::CadFormat> format = io::cad_format(path);
+  return format && io::has_units(*format);
+}
+
+/// The case or CAD file; if the latter tells its unit, its lengths are converted into the one that is asked for.
 io::CaseFile read_input(const ConvertArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
-  if (arguments.unit && io::has_cad_extension(arguments.input))
-    overrides.push_back("geometry.units=" + *arguments.unit);
+  if (arguments.unit && tells_unit(arguments.input)) overrides.push_back("geometry.units=" + *arguments.unit);
   io::CaseFile file = io::read_case_or_cad(arguments.input, overrides);
-  if (file.cad && arguments.unit && *arguments.unit != file.cad->unit) {
+  if (file.cad && arguments.unit && !file.cad->unit.empty() && *arguments.unit != file.cad->unit) {
     throw InputError(
         fmt::format("{}: its lengths are in {}, and --unit asks for {}; expected [geometry] units = \"{}\"",
                     arguments.input.string(), file.cad->unit, *arguments.unit, *arguments.unit));
@@ -116,6 +145,7 @@ int convert(const ConvertArguments& arguments, std::ostream& out, std::ostream& 
   const io::CaseFile file = read_input(arguments);
   const io::AnyModel model = io::build_model(file);
   const std::string content = format == Format::iges  ? write_iges(arguments, file, model)
+                              : format == Format::iga ? write_iga(arguments, file, model)
                               : format == Format::svg ? write_svg(arguments, file, model)
                                                       : write_vtu(arguments, model);
   if (file.cad) {

@@ -81,7 +81,8 @@ void declare(CLI::App& app, Arguments& arguments) {
   convert.add_option("IN", arguments.convert.input, "Case file (.toml) or CAD file")->required();
   convert
       .add_option("OUT", arguments.convert.output,
-                  "IGES (.igs, .iges), exact cells for ParaView (.vtu), or a drawing of a region of the plane (.svg)")
+                  "IGES (.igs, .iges), T-splines by their extraction (.iga), exact cells for ParaView (.vtu), or a "
+                  "drawing of a region of the plane (.svg)")
       ->required();
   add_overrides(convert, arguments.convert.overrides);
   convert.add_flag("--faces", arguments.loose_faces, "IGES: loose faces even where shells are closed; no solids");

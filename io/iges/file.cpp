@@ -1,15 +1,12 @@
 #include "io/iges/file.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/file_bytes.h"
 #include "io/iges/lines.h"
 #include "io/iges/records.h"
 
@@ -63,28 +60,6 @@ File read_sections(Sections sections, Warnings& warnings) {
   file.parameters = std::move(parameters);
   file.warnings = warnings.sentences();
   return file;
-}
-
-std::string read_bytes(const std::filesystem::path& path) {
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  std::error_code ignored;
-  if (!stream || std::filesystem::is_directory(path, ignored)) {
-    throw InputError(fmt::format("cannot open '{}': {}", path.string(),
-                                 stream ? "it is a folder" : std::strerror(errno != 0 ? errno : ENOENT)));
-  }
-  std::string bytes;
-  const auto size = std::filesystem::file_size(path, ignored);
-  if (!ignored) bytes.reserve(size);
-  constexpr std::size_t block = 1U << 20U;
-  while (stream) {
-    const std::size_t before = bytes.size();
-    bytes.resize(before + block);
-    stream.read(bytes.data() + before, static_cast<std::streamsize>(block));
-    bytes.resize(before + static_cast<std::size_t>(stream.gcount()));
-  }
-  if (stream.bad()) throw InputError(fmt::format("cannot read '{}': {}", path.string(), std::strerror(errno)));
-  return bytes;
 }
 
 }  // namespace

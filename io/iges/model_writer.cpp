@@ -12,6 +12,7 @@
 #include "geometry/trimming/lifted_curve.h"
 #include "geometry/trimming/loop_pieces.h"
 #include "io/iges/nurbs_records.h"
+#include "io/iges/t_splines.h"
 
 namespace isorim::io::iges {
 
@@ -23,6 +24,7 @@ using geometry::TrimLoop;
 namespace {
 
 constexpr int dependent = 1;
+constexpr int logically_dependent = 2;
 constexpr int in_parameter_space = 5;
 
 struct LoopRegion {
@@ -84,7 +86,10 @@ std::vector<FaceLoops> connected_faces(const std::vector<TrimLoop>& loops) {
 
 ModelWriter::ModelWriter(const geometry::Boundary<3>& boundary, const WriterOptions& options, double tolerance)
     : boundary_(boundary), options_(options), tolerance_(tolerance) {
-  for (const auto& patch : boundary.patches) loops_.push_back(trim_loops(patch.shape));
+  for (const auto& patch : boundary.patches) {
+    const bool extracted = std::holds_alternative<geometry::ExtractedSurface>(patch.shape);
+    loops_.push_back(extracted ? std::vector<TrimLoop>() : trim_loops(patch.shape));
+  }
 }
 
 int ModelWriter::add_curve(const NurbsCurve<3>& curve) {
@@ -179,7 +184,28 @@ bool is_natural(const TrimLoop& loop, const geometry::NurbsSurface<3>& surface) 
 
 }  // namespace
 
+int ModelWriter::add_t_spline(int patch, const geometry::ExtractedSurface& surface) {
+  const auto count = static_cast<int>(surface.elements().size());
+  DirectoryFields fields = look_of(patch);
+  fields.subordinate = logically_dependent;
+  Record group = EntityList::parameters(402);
+  group.integer(count);
+  for (int e = 0; e < count; ++e) group.integer(entities_.add(128, surface_record(bezier_surface(surface, e)), fields));
+  const int property = entities_.add(406, t_spline_property(surface), {.form = 27, .subordinate = dependent});
+  // No associativities, and the properties.
+  const std::string& name = this->patch(patch).name;
+  group.integer(0).integer(name.empty() ? 1 : 2);
+  if (!name.empty()) group.integer(add_name(name));
+  group.integer(property);
+  fields.subordinate = 0;
+  fields.form = 15;
+  entities_.add(402, group, fields);
+  return count;
+}
+
 int ModelWriter::add_loose_faces(int patch) {
+  if (const auto* surface = std::get_if<geometry::ExtractedSurface>(&this->patch(patch).shape))
+    return add_t_spline(patch, *surface);
   const auto* face = std::get_if<geometry::TrimmedSurface>(&this->patch(patch).shape);
   if (face == nullptr) {
     add_surface(patch, true);

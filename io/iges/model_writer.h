@@ -39,7 +39,7 @@ class ModelWriter {
   /// The parameter curve on the patch's surface, in space, exact or to the tolerance.
   geometry::NurbsCurve<3> lifted(int patch, const geometry::NurbsCurve<2>& pcurve) const;
 
-  /// A patch as loose faces: 128, or 144 over it. Returns their number.
+  /// A patch as loose faces: 128, 144 over it, or a group of 128s (t_splines.h). Returns their number.
   int add_loose_faces(int patch);
 
   /// Ends the parameters of an entity that stands for the patch, with its name, and adds it.
@@ -47,6 +47,7 @@ class ModelWriter {
 
  private:
   bool is_point(const geometry::NurbsCurve<3>& curve) const;
+  int add_t_spline(int patch, const geometry::ExtractedSurface& surface);
   int add_boundary(int patch, int surface, const geometry::TrimLoop& loop);
   int add_composite(const std::vector<int>& curves, int use);
   int add_name(const std::string& name);
@@ -55,7 +56,7 @@ class ModelWriter {
   const geometry::Boundary<3>& boundary_;
   const WriterOptions& options_;
   double tolerance_;
-  /// trim_loops() of each patch.
+  /// trim_loops() of each patch; none of T-splines.
   std::vector<std::vector<geometry::TrimLoop>> loops_;
   EntityList entities_;
   std::map<Colour, int> colours_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "io/iges/entity_reader.h"
 #include "io/iges/entity_types.h"
 #include "io/iges/faces.h"
+#include "io/iges/t_splines.h"
 
 namespace isorim::io {
 namespace {
@@ -39,6 +41,8 @@ class Reading {
           fmt::format("the file is drawn at a scale of {}; its coordinates are divided by it", file_.global.scale));
     }
     for (const Entity& entity : file_.entities)
+      if (entity.type == 402) add_t_spline(entity, real_size);
+    for (const Entity& entity : file_.entities)
       if (stands_for_itself(entity)) attempt(entity, real_size);
     refuse_if_bad();
     finish();
@@ -49,6 +53,7 @@ class Reading {
   void describe();
   void find_parts();
   void find_holes(const Entity& entity);
+  void add_t_spline(const Entity& group, const AffineMap<3>& map);
   bool stands_for_itself(const Entity& entity);
   void attempt(const Entity& entity, const AffineMap<3>& map);
   void add(const Entity& entity, const AffineMap<3>& map);
@@ -126,6 +131,16 @@ void Reading::find_holes(const Entity& entity) {
   } catch (const InputError& error) {
     bad_.emplace_back(error.what());
   }
+}
+
+/// If the group stands for one; its surfaces are parts of it then.
+void Reading::add_t_spline(const Entity& group, const AffineMap<3>& map) {
+  if (group.blank != 0 && !options_.include_blanked) return;
+  std::optional<iges::TSplineGroup> found = iges::t_spline_group(reader_, faces_, group);
+  if (!found) return;
+  if (map.linear != AffineMap<3>().linear) found->t_spline.surface = transform(found->t_spline.surface, map);
+  parts_.insert(found->members.begin(), found->members.end());
+  model_.t_splines.push_back(std::move(found->t_spline));
 }
 
 bool Reading::stands_for_itself(const Entity& entity) {
@@ -296,7 +311,7 @@ void Reading::finish() {
   for (const std::string& complaint : bad_) model_.warnings.push_back("left out: " + complaint);
   for (std::string& warning : reader_.warnings()) model_.warnings.push_back(std::move(warning));
   model_.approximations = reader_.approximations();
-  if (model_.faces.empty() && model_.curves.empty())
+  if (model_.faces.empty() && model_.t_splines.empty() && model_.curves.empty())
     model_.warnings.push_back(model_.points.empty() ? "the file holds no face, no curve and no point"
                                                     : "the file holds points, but no face and no curve");
 }

@@ -27,6 +27,9 @@ struct IgesOptions {
 /// bit, points to the rounding of their product with the weight), all other entities as the NURBS that are the same to
 /// rounding. What has no rational form is approximated, and listed.
 ///
+/// T-splines as our writer puts them (t_splines.h) come as such, unless their surfaces have been edited since, which a
+/// warning tells.
+///
 /// Solids (186), trimmed and bounded surfaces (144, 143), loose shells and faces (514, 510), bounded planes (108),
 /// surfaces that no face uses, curves that nothing uses, points (116), and all of them in subfigures (308, 408). What
 /// is blanked, what depends on something that is not there, and types that this program does not know are left out and

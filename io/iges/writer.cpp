@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "geometry/topology/shape_loops.h"
 #include "geometry/trimming/lifted_curve.h"
 #include "io/atomic_file.h"
 #include "io/iges/free_format.h"
@@ -45,7 +46,10 @@ struct Box {
 
 Box<3> box_of(const Boundary<3>& boundary) {
   Box<3> box;
-  for (const auto& patch : boundary.patches) box.extend(surface_of(patch.shape).control_points());
+  for (const auto& patch : boundary.patches) {
+    const geometry::ShapeLoops loops(patch.shape);
+    for (const auto* surface : loops.surfaces()) box.extend(surface->control_points());
+  }
   return box;
 }
 Box<2> box_of(const Boundary<2>& boundary) {
@@ -127,8 +131,9 @@ class VoidOwners {
   /// A point of the shell lies in the box of the other's control points, without which it cannot lie in it.
   bool may_lie_within(std::size_t inner, std::size_t outer) const {
     const auto& shape = oriented_.boundary.patches[static_cast<std::size_t>(shells()[inner].patches.front())].shape;
-    const NurbsCurve<2> pcurve = trim_loops(shape).front().curves.front();
-    const Point<3> point = lifted_point(surface_of(shape), pcurve, pcurve.domain().first);
+    const geometry::ShapeLoops loops(shape);
+    const NurbsCurve<2>& pcurve = loops.curve(0, 0);
+    const Point<3> point = lifted_point(loops.surface(0), pcurve, pcurve.domain().first);
     const Box<3>& box = boxes_[outer];
     return (box.lower.array() <= point.array()).all() && (point.array() <= box.upper.array()).all();
   }
@@ -162,15 +167,31 @@ class VoidOwners {
   std::vector<Box<3>> boxes_;
 };
 
+bool has_t_spline(const OrientedBoundary<3>& oriented, const Shell<3>& shell) {
+  return std::ranges::any_of(shell.patches, [&](int patch) {
+    const auto& shape = oriented.boundary.patches[static_cast<std::size_t>(patch)].shape;
+    return std::holds_alternative<geometry::ExtractedSurface>(shape);
+  });
+}
+
 void add_shells(ModelWriter& writer, const OrientedBoundary<3>& oriented, WriterReport& report) {
   const auto& shells = oriented.topology.shells;
   const std::vector<std::vector<int>> voids = VoidOwners(oriented).voids();
+  const auto add_loose = [&](const Shell<3>& shell) {
+    for (const int patch : shell.patches) report.loose_faces += writer.add_loose_faces(patch);
+  };
   for (std::size_t i = 0; i < shells.size(); ++i) {
-    if (shells[i].closed && !shells[i].is_void) {
+    if (!shells[i].closed) add_loose(shells[i]);
+    if (!shells[i].closed || shells[i].is_void) continue;
+    const auto void_at = [&](int shell) -> const Shell<3>& { return shells[static_cast<std::size_t>(shell)]; };
+    const bool loose = has_t_spline(oriented, shells[i]) ||
+                       std::ranges::any_of(voids[i], [&](int shell) { return has_t_spline(oriented, void_at(shell)); });
+    if (loose) {
+      add_loose(shells[i]);
+      for (const int shell : voids[i]) add_loose(void_at(shell));
+    } else {
       report.solid_faces += add_solid(writer, oriented.topology, static_cast<int>(i), voids[i]);
       ++report.solids;
-    } else if (!shells[i].closed) {
-      for (const int patch : shells[i].patches) report.loose_faces += writer.add_loose_faces(patch);
     }
   }
 }

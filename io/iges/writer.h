@@ -52,7 +52,8 @@ struct WriterReport {
   double curve_tolerance = 0.0;
 };
 
-/// Writes a boundary in space, atomically. Open shells are written as faces whatever the form.
+/// Writes a boundary in space, atomically. Open shells, and those with a T-spline, are written as faces whatever the
+/// form; a T-spline as t_splines.h says, from which read_iges() gets it back to the last bit.
 ///
 /// Surfaces, and the parameter curves of trimmed ones, keep every bit of their knots and weights, and of their points
 /// as nurbs_records.h says; a curve that solids have to cut at a vertex is cut there by knot insertion. Patches carry

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
 #include <set>
+#include <tuple>
 #include <variant>
 
 #include <fmt/format.h>
@@ -53,6 +55,17 @@ std::optional<InspectedExtraction> extraction_of(const geometry::Patch<3>& patch
   return result;
 }
 
+void count_hanging_sides(const geometry::Topology<2>& /*topology*/, std::vector<InspectedPatch>& /*patches*/) {}
+void count_hanging_sides(const geometry::Topology<3>& topology, std::vector<InspectedPatch>& patches) {
+  std::map<std::tuple<int, int, int>, int> uses;
+  for (const geometry::BoundaryEdge& edge : topology.edges)
+    for (const geometry::EdgeUse* use : {&edge.first, &edge.second}) ++uses[{use->patch, use->loop, use->curve}];
+  for (const auto& [side, count] : uses) {
+    InspectedPatch& patch = patches[static_cast<std::size_t>(std::get<0>(side))];
+    if (patch.extraction && count > 1) ++patch.extraction->hanging_sides;
+  }
+}
+
 template <int Dim>
 std::vector<InspectedPatch> patches_of(const Model<Dim>& model) {
   std::vector<InspectedPatch> patches;
@@ -72,6 +85,7 @@ std::vector<InspectedPatch> patches_of(const Model<Dim>& model) {
     patch.polynomial = patch.polynomial && element.polynomial;
     if (element.is_cut()) ++patch.cut_elements;
   }
+  count_hanging_sides(model.oriented.topology, patches);
   return patches;
 }
 

@@ -19,6 +19,8 @@ struct InspectedExtraction {
   /// The largest |sum of the functions - 1|, and on how many elements it is more than rounding.
   double partition_defect = 0.0;
   int defective_elements = 0;
+  /// Sides of elements that face several others (at T-junctions).
+  int hanging_sides = 0;
 };
 
 struct InspectedPatch {

@@ -17,7 +17,8 @@ Json patch_json(const InspectedPatch& patch) {
     json["extraction"] = {{"functions", patch.extraction->functions},
                           {"functions_per_element", patch.extraction->functions_per_element},
                           {"partition_defect", number(patch.extraction->partition_defect)},
-                          {"defective_elements", patch.extraction->defective_elements}};
+                          {"defective_elements", patch.extraction->defective_elements},
+                          {"hanging_sides", patch.extraction->hanging_sides}};
   if (!patch.origin) return json;
   const CadOrigin& origin = patch.origin->origin;
   json["entity"] = origin.entity;

@@ -97,20 +97,25 @@ std::string kind_text(const InspectedPatch& patch) {
          (patch.extraction ? ", T-spline" : "");
 }
 
+std::string extraction_text(const std::string& name, const InspectedExtraction& extraction) {
+  std::string text = fmt::format("  {}: {} functions, {} on an element", name, extraction.functions,
+                                 fmt::join(extraction.functions_per_element, ", "));
+  text += extraction.defective_elements == 0
+              ? ", which sum to one"
+              : fmt::format("; on {} elements they do not sum to one, by up to {:.2g}: divided by their sum",
+                            extraction.defective_elements, extraction.partition_defect);
+  if (extraction.hanging_sides > 0)
+    text += fmt::format("; {} sides of elements face several others", extraction.hanging_sides);
+  return text + '\n';
+}
+
 /// A line for each T-spline.
 std::string extractions_text(const std::vector<InspectedPatch>& patches) {
   std::string text;
-  for (const InspectedPatch& patch : patches) {
-    if (!patch.extraction) continue;
-    const InspectedExtraction& extraction = *patch.extraction;
-    text += fmt::format("  {}: {} functions, {} on an element", patch.name, extraction.functions,
-                        fmt::join(extraction.functions_per_element, ", "));
-    text += extraction.defective_elements == 0
-                ? ", which sum to one\n"
-                : fmt::format("; on {} elements they do not sum to one, by up to {:.2g}: divided by their sum\n",
-                              extraction.defective_elements, extraction.partition_defect);
-  }
-  return text;
+  std::size_t count = 0;
+  for (const InspectedPatch& patch : patches)
+    if (patch.extraction && ++count <= most_lines) text += extraction_text(patch.name, *patch.extraction);
+  return text + more(count);
 }
 
 std::string patches_text(const std::vector<InspectedPatch>& patches) {

@@ -123,12 +123,18 @@ struct EdgeCurves {
   std::vector<std::string> names;
   std::vector<double> free;
   std::vector<double> gaps;
+  /// Between two elements of one T-spline.
+  std::vector<double> inner;
 
   void write(const std::filesystem::path& path) const {
-    const std::vector<VtuField> fields{{"free", 1, free}, {"gap", 1, gaps}};
+    const std::vector<VtuField> fields{{"free", 1, free}, {"gap", 1, gaps}, {"inner", 1, inner}};
     write_curves_vtu<3>(path, curves, names, fields);
   }
 };
+
+bool is_t_spline(const geometry::Patch<3>& patch) {
+  return std::holds_alternative<geometry::ExtractedSurface>(patch.shape);
+}
 
 void append_free_edges(const Model<3>& model, EdgeCurves& edges) {
   const EdgeLifter lifter(model);
@@ -137,6 +143,7 @@ void append_free_edges(const Model<3>& model, EdgeCurves& edges) {
     edges.names.push_back(model.oriented.boundary.patches[static_cast<std::size_t>(edge.patch)].name);
     edges.free.push_back(1.0);
     edges.gaps.push_back(edge.nearest < 0 ? -1.0 : edge.gap);
+    edges.inner.push_back(0.0);
   }
 }
 
@@ -154,6 +161,8 @@ void write_edges_vtu(const std::filesystem::path& path, const AnyModel& model) {
                           patches[static_cast<std::size_t>(edge.second.patch)].name);
     edges.free.push_back(0.0);
     edges.gaps.push_back(edge.gap);
+    const bool is_inner = use.patch == edge.second.patch && use.loop != edge.second.loop;
+    edges.inner.push_back(is_inner && is_t_spline(patches[static_cast<std::size_t>(use.patch)]) ? 1.0 : 0.0);
   }
   append_free_edges(solid, edges);
   edges.write(path);

@@ -118,7 +118,7 @@ TEST(ExtractedShells, MeetNurbsPatchesAndFinerElements) {
   Boundary<3> mixed = box(Vector3(1, 2, 3));
   for (std::size_t i = 0; i < mixed.patches.size(); i += 2)
     mixed.patches[i].shape =
-        with_hanging_edges(extracted(std::get<NurbsSurface<3>>(mixed.patches[i].shape)), random, 12);
+        with_hanging_edges(extracted_surface(std::get<NurbsSurface<3>>(mixed.patches[i].shape)), random, 12);
   const OrientedBoundary<3> oriented = orient(mixed);
   EXPECT_TRUE(oriented.topology.closed);
   EXPECT_EQ(oriented.topology.shells.size(), 1u);
@@ -177,7 +177,7 @@ TEST(ExtractedShells, AGapAtAHangingEdgeIsClosedWithinTheToleranceOfFilesAndRepo
 TEST(ExtractedShells, ElementsThatLookToDifferentSidesAreRefused) {
   Boundary<3> boundary = extracted(torus(3.0, 1.0));
   std::vector<ExtractionElement> elements = surface_at(boundary).elements();
-  elements[6] = testing::reversed(elements[6]);
+  elements[6] = reversed(surface_at(boundary)).elements()[6];
   boundary.patches[0].shape = ExtractedSurface(surface_at(boundary).homogeneous(), elements);
   EXPECT_THAT(refusal([&] { orient(boundary); }),
               AllOf(HasSubstr("look to different sides"), HasSubstr(" 6"), HasSubstr("of patch 'torus'")));

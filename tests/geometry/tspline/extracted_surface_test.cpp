@@ -4,18 +4,20 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "geometry/bezier/element_table.h"
+#include "geometry/shapes/solids.h"
+#include "geometry/topology/orientation.h"
+#include "geometry/tspline/extraction.h"
 #include "tests/geometry/expect_error.h"
 #include "tests/geometry/random_splines.h"
-#include "tests/geometry/tspline/extracted_surfaces.h"
 
 namespace isorim::geometry {
 namespace {
 
-using testing::extracted;
 using testing::Random;
 
 /// A bilinear unit square over four functions.
@@ -38,7 +40,7 @@ TEST(ExtractedSurface, HasTheBezierElementsOfTheNurbsSurfaceThatItWas) {
     const NurbsSurface<3> surface =
         testing::random_surface<3>(random, testing::random_knots(random, random.integer(1, 5)),
                                    testing::random_knots(random, random.integer(1, 5)));
-    const ExtractedSurface extraction = extracted(surface);
+    const ExtractedSurface extraction = extracted_surface(surface);
     const ElementTable<3> table = bezier_elements(Boundary<3>{{{"surface", surface, 1}}});
     ASSERT_EQ(extraction.elements().size(), table.elements.size());
     for (std::size_t e = 0; e < table.elements.size(); ++e) {
@@ -54,7 +56,7 @@ TEST(ExtractedSurface, FunctionsOfNurbsSurfacesSumToOne) {
   for (int trial = 0; trial < 20; ++trial) {
     const NurbsSurface<3> surface =
         testing::random_surface<3>(random, testing::random_knots(random, 3), testing::random_knots(random, 4));
-    EXPECT_THAT(partition_defects(extracted(surface)), ::testing::Each(::testing::Lt(1e-13)));
+    EXPECT_THAT(partition_defects(extracted_surface(surface)), ::testing::Each(::testing::Lt(1e-13)));
   }
 }
 
@@ -75,7 +77,7 @@ TEST(ExtractedSurface, EqualWeightsStayEqualInBezierFormIfTheFunctionsSumToOne) 
   const KnotVector v = testing::random_knots(random, 2, testing::Ends::clamped, 2);
   HomogeneousPoints<3> net = testing::random_net<3>(random, u.basis_count() * v.basis_count());
   net.row(3).setConstant(0.7);
-  const ExtractedSurface surface = extracted(NurbsSurface<3>(u, v, net));
+  const ExtractedSurface surface = extracted_surface(NurbsSurface<3>(u, v, net));
   for (std::size_t e = 0; e < surface.elements().size(); ++e)
     EXPECT_TRUE((bezier_net(surface, static_cast<int>(e)).row(3).array() == 0.7).all());
 }
@@ -95,9 +97,42 @@ TEST(ExtractedSurface, TransformsAsItsPointsDo) {
   AffineMap<3> map;
   map.linear << 1, 2, 0, -1, 0.5, 0, 0, 0.25, -3;
   map.translation << 4, -5, 6;
-  const ExtractedSurface mapped = transform(extracted(nurbs), map);
+  const ExtractedSurface mapped = transform(extracted_surface(nurbs), map);
   EXPECT_EQ(mapped.homogeneous(), transform(nurbs, map).homogeneous());
-  EXPECT_EQ(mapped.elements().size(), extracted(nurbs).elements().size());
+  EXPECT_EQ(mapped.elements().size(), extracted_surface(nurbs).elements().size());
+}
+
+TEST(ExtractedSurface, ReversedLooksTheOtherWay) {
+  Random random(15);
+  const ExtractedSurface surface = extracted_surface(
+      testing::random_surface<3>(random, testing::random_knots(random, 2), testing::random_knots(random, 3)));
+  const ExtractedSurface turned = reversed(surface);
+  for (int e = 0; e < static_cast<int>(surface.elements().size()); ++e) {
+    const Point2 place(random.real(0.0, 1.0), random.real(0.0, 1.0));
+    const SurfaceJet<3> jet = evaluate_jet(bezier_surface(surface, e), place);
+    const SurfaceJet<3> other = evaluate_jet(bezier_surface(turned, e), Point2(1.0 - place.x(), place.y()));
+    EXPECT_LE((jet.point - other.point).norm(), 1e-14);
+    EXPECT_LE((jet.du + other.du).norm(), 1e-13 * jet.du.norm());
+    EXPECT_LE((jet.dv - other.dv).norm(), 1e-13 * jet.dv.norm());
+  }
+  EXPECT_EQ(reversed(turned).elements()[0].rows, surface.elements()[0].rows);
+  EXPECT_EQ(turned.elements()[0].domain[0].first, -surface.elements()[0].domain[0].last);
+}
+
+TEST(ExtractedSurface, PatchesBecomeOneSurfaceThatLooksOutward) {
+  Boundary<3> solid = box(Vector3(1, 2, 3));
+  solid.patches[2].shape = reverse(std::get<NurbsSurface<3>>(solid.patches[2].shape), Direction::u);
+  const OrientedBoundary<3> oriented = orient(solid);
+  ASSERT_EQ(oriented.boundary.patches[2].orientation, -1);
+  const Boundary<3> one{{{"box", extracted_surface(oriented.boundary), 1}}};
+  const OrientedBoundary<3> again = orient(one);
+  EXPECT_TRUE(again.topology.closed);
+  EXPECT_EQ(again.boundary.patches[0].orientation, 1);
+  Boundary<3> trimmed = solid;
+  const auto& whole = std::get<NurbsSurface<3>>(solid.patches[0].shape);
+  trimmed.patches[0].shape = TrimmedSurface(whole, {domain_loop(whole)});
+  EXPECT_GEOMETRY_ERROR(extracted_surface(trimmed),
+                        fmt::format("patch \"{}\": it is trimmed", trimmed.patches[0].name));
 }
 
 struct Refusal {

@@ -33,6 +33,7 @@
 #include "geometry/errors.h"
 #include "geometry/shapes/curves.h"
 #include "geometry/shapes/solids.h"
+#include "tests/geometry/tspline/extracted_surfaces.h"
 
 namespace isorim::io {
 namespace {
@@ -219,8 +220,7 @@ Point3 exact_point(const Boundary<2>& boundary, const geometry::BezierElement<2>
 
 /// The largest distance between the cells and the patches at random points, relative to the boundary's size.
 template <int Dim>
-double largest_error(const Boundary<Dim>& boundary, vtkUnstructuredGrid* grid) {
-  const ElementTable<Dim> table = bezier_elements(boundary);
+double largest_error(const Boundary<Dim>& boundary, const ElementTable<Dim>& table, vtkUnstructuredGrid* grid) {
   EXPECT_EQ(grid->GetNumberOfCells(), static_cast<vtkIdType>(table.elements.size()));
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit;
@@ -239,6 +239,11 @@ double largest_error(const Boundary<Dim>& boundary, vtkUnstructuredGrid* grid) {
   return error / size;
 }
 
+template <int Dim>
+double largest_error(const Boundary<Dim>& boundary, vtkUnstructuredGrid* grid) {
+  return largest_error(boundary, bezier_elements(boundary), grid);
+}
+
 // ---- Exactness
 
 TEST_F(BezierWriter, CellsAreQuadrics) {
@@ -255,6 +260,36 @@ TEST_F(BezierWriter, CellsAreSurfacesOfMixedDegreesAndWeights) {
   const Boundary<3> boundary = mixed_surfaces();
   write_vtu(path_, bezier_elements(boundary));
   EXPECT_LT(largest_error(boundary, read()), 1e-12);
+}
+
+TEST_F(BezierWriter, CellsAreElementsOfExtractedSurfaces) {
+  for (const Boundary<3>& boundary : {mixed_surfaces(), geometry::torus(major_radius, minor_radius)}) {
+    Boundary<3> extracted = geometry::testing::extracted(boundary);
+    auto& first = std::get<geometry::ExtractedSurface>(extracted.patches[0].shape);
+    first = geometry::testing::cut_element(geometry::testing::cut_element(first, 1, 0, 0.3), 1, 1, 0.6);
+    const ElementTable<3> table = bezier_elements(extracted);
+    write_vtu(path_, table);
+    EXPECT_LT(largest_error(boundary, table, read()), 1e-12);
+  }
+}
+
+/// Where rows do not sum to one the cell is rational: the surface divides by the sum.
+TEST_F(BezierWriter, CellsDivideBySumsOfFunctionsThatAreNotOne) {
+  Boundary<3> boundary = geometry::testing::extracted(geometry::box({1.0, 2.0, 3.0}));
+  const auto& whole = std::get<geometry::ExtractedSurface>(boundary.patches[0].shape);
+  std::vector<geometry::ExtractionElement> elements = whole.elements();
+  elements[0].rows(1, 1) = 0.9;
+  elements[0].rows(2, 0) = 0.05;
+  const geometry::ExtractedSurface surface(whole.homogeneous(), elements);
+  boundary.patches = {{"face", surface, 1}};
+  write_vtu(path_, bezier_elements(boundary));
+  const auto grid = read();
+  for (const auto& [r, s] : {std::pair(0.0, 0.0), std::pair(1.0, 0.0), std::pair(0.3, 0.8)}) {
+    const Eigen::Vector4d bernstein((1 - r) * (1 - s), r * (1 - s), (1 - r) * s, r * s);
+    const Eigen::Vector4d functions = elements[0].rows * bernstein;
+    const Eigen::Vector4d sum = surface.homogeneous() * functions;
+    EXPECT_LT((vtk_point(grid, 0, r, s) - sum.head<3>() / functions.sum()).norm(), 1e-14);
+  }
 }
 
 TEST_F(BezierWriter, CellsAreCurvesOfMixedDegreesAndWeights) {
