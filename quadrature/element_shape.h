@@ -69,4 +69,12 @@ template <int Dim>
 std::complex<double> singularity_on_line(const geometry::Vector<Dim>& offset, const geometry::Vector<Dim>& tangent,
                                          const geometry::Vector<Dim>& curvature);
 
+/// A singularity that is extrapolated from a sample at distance d from it is known to a part of d only: this one says
+/// nothing new, beside a better known one or so near to the real axis that it may lie on any side of it.
+inline bool is_vague(std::complex<double> extrapolated, std::complex<double> known, double sample) {
+  constexpr double part = 0.35;
+  const double uncertainty = part * std::abs(extrapolated - sample);
+  return std::abs(extrapolated - known) < uncertainty || std::abs(extrapolated.imag()) < uncertainty;
+}
+
 }  // namespace isorim::quadrature

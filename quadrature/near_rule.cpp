@@ -9,7 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "quadrature/direction_rule.h"
 #include "quadrature/gauss_legendre.h"
+#include "quadrature/polar_rule.h"
+#include "quadrature/winding_number.h"
 
 namespace isorim::quadrature {
 
@@ -26,12 +29,6 @@ Complex singularity(const ElementJet<Dim>& jet, std::size_t d) {
   return singularity_on_line<Dim>(jet.offset, jet.first[d], jet.second[d]);
 }
 
-/// A rule along one direction of a cell.
-struct DirectionRule {
-  SinhMap map;
-  int points = 0;
-};
-
 /// Where the integrand is singular in the complex plane of a direction's parameter, on the lines through a few places.
 /// Parameters are those of the cell: 0 to 1 across it.
 template <int Dim>
@@ -45,8 +42,11 @@ std::vector<Complex> singularities(const NearRequest<Dim>& request, const Cell<D
   };
   add(nearest.place[i], singularity(nearest.jet, d));
   const geometry::Vector<Dim> straight = geometry::Vector<Dim>::Zero();
-  for (const auto& sample : request.shape->samples)
-    add(sample.place[i], singularity_on_line<Dim>(sample.position - request.target, sample.first[d], straight));
+  const Complex known = nearest.place[i] + singularity(nearest.jet, d);
+  for (const auto& sample : request.shape->samples) {
+    const Complex root = singularity_on_line<Dim>(sample.position - request.target, sample.first[d], straight);
+    if (!is_vague(sample.place[i] + root, known, sample.place[i])) add(sample.place[i], root);
+  }
   if constexpr (Dim == 3) {
     // Lines beside the nearest place, at distances like the target's.
     const std::size_t other = 1 - d;
@@ -95,35 +95,6 @@ DirectionRule direction_rule(const NearRequest<Dim>& request, const Cell<Dim - 1
   return 1.2 * mapped.points < plain.points ? mapped : plain;
 }
 
-template <int Dim>
-void reserve_more(NodeBuffer<Dim>& nodes, std::size_t count) {
-  const std::size_t size = nodes.size + count;
-  if (nodes.cell_weight.size() >= size) return;
-  nodes.cell_weight.resize(size);
-  for (std::vector<double>& values : nodes.place) values.resize(size);
-}
-
-void append_node(NodeBuffer<3>& nodes, const geometry::Point2& place, double weight) {
-  nodes.place[0][nodes.size] = place[0];
-  nodes.place[1][nodes.size] = place[1];
-  nodes.cell_weight[nodes.size++] = weight;
-}
-
-/// Places across a cell's direction and their weights.
-struct MappedRule {
-  std::array<double, max_gauss_points> places;
-  std::array<double, max_gauss_points> weights;
-
-  MappedRule(const DirectionRule& direction, double lower, double width) {
-    const Rule& gauss = gauss_legendre(direction.points);
-    for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
-      const SinhMap::Value at = direction.map.at(gauss.nodes[k]);
-      places[k] = lower + width * at.place;
-      weights[k] = width * gauss.weights[k] * at.derivative;
-    }
-  }
-};
-
 void append_tensor(const Cell<2>& cell, const std::array<DirectionRule, 2>& rules, NodeBuffer<3>& nodes) {
   const MappedRule u(rules[0], cell.lower[0], cell.width(0));
   const MappedRule v(rules[1], cell.lower[1], cell.width(1));
@@ -133,156 +104,6 @@ void append_tensor(const Cell<2>& cell, const std::array<DirectionRule, 2>& rule
       append_node(nodes, {u.places[a], v.places[b]}, u.weights[a] * v.weights[b]);
   }
 }
-
-/// The metric of the surface at a place: squared lengths of steps in the parameters.
-struct Metric {
-  double uu;
-  double vv;
-  double uv;
-
-  /// Kept away from singular, where an edge is degenerate.
-  Metric(const ElementJet<3>& jet, const std::array<double, 2>& half_length) {
-    constexpr double least_speed = 1e-5;
-    constexpr double most_cosine = 0.999;
-    uu = std::max(jet.first[0].squaredNorm(), std::pow(least_speed * half_length[0], 2));
-    vv = std::max(jet.first[1].squaredNorm(), std::pow(least_speed * half_length[1], 2));
-    const double most = most_cosine * std::sqrt(uu * vv);
-    uv = std::clamp(jet.first[0].dot(jet.first[1]), -most, most);
-  }
-  double product(const geometry::Vector2& a, const geometry::Vector2& b) const {
-    return uu * a[0] * b[0] + vv * a[1] * b[1] + uv * (a[0] * b[1] + a[1] * b[0]);
-  }
-  double root_determinant() const { return std::sqrt(uu * vv - uv * uv); }
-};
-
-double cross(const geometry::Vector2& a, const geometry::Vector2& b) {
-  return a[0] * b[1] - a[1] * b[0];
-}
-
-/// The triangle between the pole and one side of a cell; sides are straight lines in the parameters.
-struct Triangle {
-  /// From the pole.
-  geometry::Vector2 first;
-  geometry::Vector2 side;
-  double area_factor = 0.0;
-  DirectionRule along;
-  int radial_points = 0;
-
-  geometry::Vector2 ray(double s) const { return first + s * side; }
-};
-
-/// Polar coordinates about a pole in the parameters.
-class PolarRule {
- public:
-  PolarRule(const NearRequest<3>& request, const Cell<2>& cell, const geometry::Point2& pole, const ElementJet<3>& jet,
-            bool is_own)
-      : request_(request),
-        cell_(cell),
-        pole_(pole),
-        jet_(jet),
-        is_own_(is_own),
-        metric_(jet, request.shape->half_length) {
-    const std::array<geometry::Point2, 4> corners{
-        geometry::Point2(cell.lower), {cell.upper[0], cell.lower[1]}, cell.upper, {cell.lower[0], cell.upper[1]}};
-    for (std::size_t k = 0; k < 4; ++k) add_triangle(corners[k], corners[(k + 1) % 4], k % 2);
-  }
-
-  /// Of all triangles.
-  int points() const {
-    int sum = 0;
-    for (const Triangle& triangle : triangles_) sum += triangle.along.points * triangle.radial_points;
-    return sum;
-  }
-  int most_points_on_a_line() const {
-    int most = 0;
-    for (const Triangle& triangle : triangles_) most = std::max({most, triangle.along.points, triangle.radial_points});
-    return most;
-  }
-
-  void append(NodeBuffer<3>& nodes) const {
-    reserve_more(nodes, static_cast<std::size_t>(points()));
-    for (const Triangle& triangle : triangles_) append(triangle, nodes);
-  }
-
- private:
-  void add_triangle(const geometry::Point2& from, const geometry::Point2& to, std::size_t direction) {
-    constexpr double nothing = 1e-15;
-    Triangle triangle{from - pole_, to - from, 0.0, {}, 0};
-    triangle.area_factor = cross(triangle.first, triangle.side);
-    if (triangle.area_factor <= nothing * cell_.width(0) * cell_.width(1)) return;
-    const double squared = metric_.product(triangle.side, triangle.side);
-    const double foot = -metric_.product(triangle.first, triangle.side) / squared;
-    const double height = metric_.root_determinant() * triangle.area_factor / squared;
-    const SinhMap map(foot, height);
-    const Complex root(foot, height);
-    const auto growth = [&](Complex s) {
-      const auto i = static_cast<Eigen::Index>(direction);
-      return request_.shape->growth[direction](log_ellipse(pole_[i] + triangle.first[i] + s * triangle.side[i]));
-    };
-    triangle.along = {map, gauss_points(map, map.log_ellipse_of(root), request_.tolerance, growth)};
-    for (const double s : {0.0, std::clamp(foot, 0.0, 1.0), 1.0})
-      triangle.radial_points = std::max(triangle.radial_points, radial_points(triangle.ray(s)));
-    triangles_.push_back(triangle);
-  }
-
-  geometry::Vector3 tangent(const geometry::Vector2& ray) const {
-    return ray[0] * jet_.first[0] + ray[1] * jet_.first[1];
-  }
-  geometry::Vector3 curvature(const geometry::Vector2& ray) const {
-    return ray[0] * ray[0] * jet_.second[0] + ray[1] * ray[1] * jet_.second[1] + 2.0 * ray[0] * ray[1] * jet_.second[2];
-  }
-
-  /// Along a ray, on which the integrand's coordinate runs from 0 at the pole to 1.
-  Complex singularity(const geometry::Vector2& ray) const {
-    return singularity_on_line<3>(jet_.offset, tangent(ray), curvature(ray));
-  }
-  /// Where the distance from the pole, divided by the coordinate, vanishes.
-  Complex distant_singularity(const geometry::Vector2& ray) const {
-    const geometry::Vector3 turn = curvature(ray);
-    const double bending = turn.squaredNorm();
-    const double speed = tangent(ray).squaredNorm();
-    if (bending < 1e-6 * speed) return {0.0, 1e3};
-    const double b = 2.0 * tangent(ray).dot(turn) / bending;
-    return {-b, std::sqrt(std::max(4.0 * speed / bending - b * b, 0.0))};
-  }
-  SinhMap radial_map(const geometry::Vector2& ray) const {
-    if (is_own_) return {};
-    const Complex root = singularity(ray);
-    return root.real() <= 0.0 ? SinhMap::towards(Complex(0.0, std::abs(root))) : SinhMap::towards(root);
-  }
-
-  int radial_points(const geometry::Vector2& ray) const {
-    const SinhMap map = radial_map(ray);
-    double log_rho = map.log_ellipse_of(distant_singularity(ray));
-    if (!is_own_) log_rho = std::min(log_rho, map.log_ellipse_of(singularity(ray)));
-    const auto growth = [&](Complex t) {
-      return request_.shape->growth[0](log_ellipse(pole_[0] + t * ray[0])) +
-             request_.shape->growth[1](log_ellipse(pole_[1] + t * ray[1]));
-    };
-    return gauss_points(map, log_rho, request_.tolerance, growth);
-  }
-
-  void append(const Triangle& triangle, NodeBuffer<3>& nodes) const {
-    const MappedRule along(triangle.along, 0.0, 1.0);
-    for (std::size_t a = 0; a < static_cast<std::size_t>(triangle.along.points); ++a) {
-      const geometry::Vector2 ray = triangle.ray(along.places[a]);
-      const MappedRule radial({radial_map(ray), triangle.radial_points}, 0.0, 1.0);
-      const double factor = triangle.area_factor * along.weights[a];
-      for (std::size_t b = 0; b < static_cast<std::size_t>(triangle.radial_points); ++b) {
-        const double t = radial.places[b];
-        append_node(nodes, cell_.clamped(pole_ + t * ray), factor * t * radial.weights[b]);
-      }
-    }
-  }
-
-  const NearRequest<3>& request_;
-  const Cell<2>& cell_;
-  geometry::Point2 pole_;
-  ElementJet<3> jet_;
-  bool is_own_;
-  Metric metric_;
-  std::vector<Triangle> triangles_;
-};
 
 /// How the speeds of the parameters change over a cell.
 struct Distortion {
@@ -364,7 +185,7 @@ void append_cell(const NearRequest<3>& request, const Cell<2>& cell, const Neare
     if (std::max(rules[0].points, rules[1].points) <= most_points) tensor_points = rules[0].points * rules[1].points;
     if (tensor_points <= cheap) return append_tensor(cell, rules, nodes);
   }
-  const PolarRule polar(request, cell, nearest.place, nearest.jet, is_own);
+  const PolarRule polar(request, sides(cell), nearest.place, nearest.jet, is_own, PolarRule::Around::place);
   if (tensor_points <= polar.points()) return append_tensor(cell, rules, nodes);
   const Distortion metric = distortion(request, cell, nearest.jet);
   const bool is_even = metric.ratio <= most_distortion && polar.most_points_on_a_line() <= most_points;
@@ -372,8 +193,6 @@ void append_cell(const NearRequest<3>& request, const Cell<2>& cell, const Neare
     return append_halves(request, cell, metric.direction, nearest, depth, nodes);
   polar.append(nodes);
 }
-
-/// Lines -------------------------------------------------------------------
 
 void append_line(const Cell<1>& cell, const DirectionRule& direction, NodeBuffer<2>& nodes) {
   const MappedRule rule(direction, cell.lower[0], cell.width(0));
@@ -415,6 +234,11 @@ std::array<int, Dim - 1> plain_orders(const NearRequest<Dim>& request, const Nea
 template <>
 void near_rule(const NearRequest<3>& request, const NearestPlace<3>& nearest, NodeBuffer<3>& nodes) {
   nodes.size = 0;
+  if (request.region != nullptr) {
+    const bool is_kept = request.is_own || winding_number(*request.region, nearest.place) > 0.5;
+    const auto around = is_kept ? PolarRule::Around::place : PolarRule::Around::hole;
+    return PolarRule(request, request.region->curves, nearest.place, nearest.jet, request.is_own, around).append(nodes);
+  }
   append_cell(request, Cell<2>(), nearest, 0, nodes);
 }
 

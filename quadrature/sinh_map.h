@@ -81,7 +81,7 @@ template <class GrowthAt>
 int gauss_points(const SinhMap& map, double log_rho, double tolerance, const GrowthAt& growth) {
   constexpr std::array<double, 6> shares{1.0, 0.75, 0.55, 0.4, 0.28, 0.18};
   constexpr double quarter = 0.78539816339744831;
-  constexpr double constant = 3.0;
+  constexpr double constant = 7.0;
   const double digits = constant - std::log(tolerance);
   double least = max_gauss_points;
   for (const double share : shares) {

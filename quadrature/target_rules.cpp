@@ -7,18 +7,23 @@
 #include <deque>
 #include <mutex>
 
+#include "quadrature/cut_region.h"
 #include "quadrature/element_jet.h"
 #include "quadrature/element_shape.h"
 #include "quadrature/gauss_legendre.h"
 #include "quadrature/near_rule.h"
 #include "quadrature/parallel.h"
+#include "quadrature/region_moments.h"
 
 namespace isorim::quadrature {
 
 namespace {
 
-/// Rules of more points in a direction are made for the target.
-constexpr int most_kept_points = 24;
+/// Rules of a higher order in a direction are made for the target.
+constexpr int most_kept_order = 24;
+/// On a cut element n nodes are exact for polynomials of degree n - 1 instead of 2 n - 1.
+constexpr int nodes_per_order_when_cut = 2;
+constexpr int most_kept_points = most_kept_order * nodes_per_order_when_cut;
 /// Far targets are sorted by distance from the centre of the element's sphere, in units of its radius.
 constexpr std::array<double, 9> far_levels{1.35, 1.6, 2.0, 2.6, 3.5, 5.0, 8.0, 14.0, 30.0};
 
@@ -75,10 +80,22 @@ int number_of(const std::array<int, Dim - 1>& orders) {
   return number;
 }
 
+/// What is kept of a cut element.
+struct CutElement {
+  const geometry::TrimmedRegion* boundary;
+  CutRegion region;
+  /// The region's moments serve one thread at a time.
+  std::mutex moments;
+
+  explicit CutElement(const geometry::TrimmedRegion& curves) : boundary(&curves), region(curves) {}
+};
+
 /// What is known of an element, and its kept rules: a list to which rules are added in front, never taken away.
 template <int Dim>
 struct ElementState {
   ElementShape<Dim> shape;
+  /// Null if all of it is kept.
+  std::unique_ptr<CutElement> cut;
   std::array<std::array<int, Dim - 1>, far_levels.size()> far_orders{};
   std::atomic<const KeptRule<Dim>*> rules{nullptr};
   std::array<std::atomic<const KeptRule<Dim>*>, far_levels.size()> far_rules{};
@@ -107,8 +124,11 @@ struct TargetRules<Dim>::State {
     constexpr std::size_t chunk = 16;
     parallel_for((elements.size() + chunk - 1) / chunk, 0, [&](std::size_t task, int) {
       for (std::size_t e = task * chunk; e < std::min((task + 1) * chunk, elements.size()); ++e) {
-        elements[e].shape =
-            element_shape(element_net(table, table.elements[e]), options.field_degree, options.tolerance);
+        const geometry::BezierElement<Dim>& element = table.elements[e];
+        elements[e].shape = element_shape(element_net(table, element), options.field_degree, options.tolerance);
+        if constexpr (Dim == 3) {
+          if (element.is_cut()) set_region(table.regions[static_cast<std::size_t>(element.region)], elements[e]);
+        }
         set_far_orders(elements[e]);
       }
     });
@@ -130,15 +150,31 @@ struct TargetRules<Dim>::State {
     }
   }
 
-  bool can_keep(const Orders& orders) const {
-    return std::all_of(orders.begin(), orders.end(), [](int n) { return 0 < n && n <= most_kept_points; });
+  static void set_region(const geometry::TrimmedRegion& curves, ElementState<Dim>& element) {
+    auto cut = std::make_unique<CutElement>(curves);
+    if (cut->region.extent() != CutRegion::Extent::everything) element.cut = std::move(cut);
   }
 
-  const KeptRule<Dim>& kept(ElementState<Dim>& element, const Orders& orders) const {
+  bool can_keep(const Orders& orders) const {
+    return std::all_of(orders.begin(), orders.end(), [](int n) { return 0 < n && n <= most_kept_order; });
+  }
+
+  /// Weights on the cell.
+  static void set_weights(ElementState<Dim>& element, const Orders& points, NodeBuffer<Dim>& nodes) {
+    set_tensor<Dim>(points, nodes);
+    if constexpr (Dim == 3) {
+      if (!element.cut) return;
+      const std::lock_guard lock(element.cut->moments);
+      region_weights(element.cut->region.moments(points), points, nodes.cell_weight);
+    }
+  }
+
+  const KeptRule<Dim>& kept(ElementState<Dim>& element, Orders orders) const {
+    for (int& order : orders) order *= element.cut ? nodes_per_order_when_cut : 1;
     const KeptRule<Dim>* known = element.rules.load(std::memory_order_acquire);
     if (const KeptRule<Dim>* found = find(known, nullptr, orders)) return *found;
     auto rule = std::make_unique<KeptRule<Dim>>();
-    set_tensor<Dim>(orders, rule->nodes);
+    set_weights(element, orders, rule->nodes);
     evaluate_nodes(element.shape.net, element.shape.centre, rule->nodes);
     rule->nodes.cell_weight = {};
     for (std::vector<double>& values : rule->nodes.offset) values = {};
@@ -193,15 +229,14 @@ NodeView<Dim> TargetRules<Dim>::nodes(int element, const Target<Dim>& target, No
     while (squared < far_levels[level] * far_levels[level] * radius_squared) --level;
     if (const KeptRule<Dim>* rule = state_->far_rule(state, level)) return rule->view;
   }
-  const Options& options = state_->options;
-  const NearRequest<Dim> request{&shape,       target.position,   is_own,
-                                 target.place, options.tolerance, static_cast<double>(options.field_degree)};
+  const NearRequest<Dim> request{&shape,       target.position,           is_own,
+                                 target.place, state_->options.tolerance, state.cut ? state.cut->boundary : nullptr};
   NearestPlace<Dim> nearest;
   if (is_own) {
     nearest = {target.place, element_jet(shape.net, target.place, target.position), 0.0};
   } else {
     nearest = nearest_place(shape, Cell<Dim - 1>(), target.position);
-    std::array<int, Dim - 1> orders = plain_orders(request, nearest, most_kept_points);
+    std::array<int, Dim - 1> orders = plain_orders(request, nearest, most_kept_order);
     for (int& order : orders) order = rounded_order(order);
     if (state_->can_keep(orders)) return state_->kept(state, orders).view;
   }
@@ -218,7 +253,7 @@ NodeView<Dim> TargetRules<Dim>::far_nodes(int element, double distance) const {
   std::size_t level = far_levels.size() - 1;
   while (level > 0 && state.shape.radius + distance < far_levels[level] * state.shape.radius) --level;
   std::array<int, Dim - 1> orders = state.far_orders[level];
-  for (int& order : orders) order = std::min(order, most_kept_points);
+  for (int& order : orders) order = std::min(order, most_kept_order);
   return state_->kept(state, orders).view;
 }
 

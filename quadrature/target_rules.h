@@ -59,10 +59,12 @@ struct NodeBuffer {
   std::vector<double> cell_weight;
 };
 
-/// Rules for all elements of a table. Far elements are served from kept tensor rules whose order goes with the distance
-/// in each direction; near ones by subdivision and sinh or Telles maps towards the closest point; the target's own by
-/// polar (Duffy) maps about its place, in 2D by splitting there and logarithmic rules. Cut elements likewise over their
-/// regions. Decisions depend on ratios of lengths alone, so the unit of length plays no part.
+/// Rules for all elements of a table, which has to outlive them. Far elements are served from kept tensor rules whose
+/// order goes with the distance in each direction; near ones by subdivision and sinh or Telles maps towards the closest
+/// point; the target's own by polar (Duffy) maps about its place, in 2D by splitting there and logarithmic rules. Cut
+/// elements: far targets by the moments of their regions, near ones and their own in polar coordinates over the
+/// regions' boundaries (weights of both signs). Decisions depend on ratios of lengths alone, so the unit of length
+/// plays no part.
 template <int Dim>
 class TargetRules {
  public:
