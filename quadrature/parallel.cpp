@@ -5,6 +5,7 @@
 #include <exception>
 #include <limits>
 #include <mutex>
+#include <utility>
 
 #include <omp.h>
 
@@ -66,6 +67,38 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
 #pragma omp parallel num_threads(team)
     work(omp_get_thread_num());
   }
+  failure.rethrow();
+}
+
+void with_team(int threads, const std::function<void()>& body) {
+  const int team = thread_count(threads);
+  if (team <= 1) return body();
+  FirstFailure failure;
+#pragma omp parallel num_threads(team)
+#pragma omp single
+  try {
+    body();
+  } catch (...) {
+    failure.keep(0, std::current_exception());
+  }
+  failure.rethrow();
+}
+
+void together(std::span<const std::function<void()>> tasks) {
+  FirstFailure failure;
+  const auto run = [&](std::size_t task) {
+    try {
+      tasks[task]();
+    } catch (...) {
+      failure.keep(task, std::current_exception());
+    }
+  };
+  for (std::size_t task = 1; task < tasks.size(); ++task) {
+#pragma omp task default(none) firstprivate(task) shared(run)
+    run(task);
+  }
+  if (!tasks.empty()) run(0);
+#pragma omp taskwait
   failure.rethrow();
 }
 

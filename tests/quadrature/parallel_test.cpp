@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -56,6 +57,52 @@ TEST(ParallelFor, ReportsProgressFromTheCallingThread) {
 
 TEST(ParallelFor, DoesNothingWithoutTasks) {
   parallel_for(0, 3, [](std::size_t, int) { FAIL(); });
+}
+
+/// 2^depth, each half by a task of its own.
+int leaves(int depth) {
+  if (depth == 0) return 1;
+  int left = 0;
+  int right = 0;
+  const std::vector<std::function<void()>> tasks{[&] { left = leaves(depth - 1); }, [&] { right = leaves(depth - 1); }};
+  together(tasks);
+  return left + right;
+}
+
+TEST(Together, TasksMayCallTasks) {
+  EXPECT_EQ(leaves(6), 64);
+  for (const int threads : {1, 2, 5}) {
+    int calls = 0;
+    int sum = 0;
+    with_team(threads, [&] {
+      ++calls;
+      sum = leaves(10);
+    });
+    EXPECT_EQ(calls, 1);
+    EXPECT_EQ(sum, 1024);
+  }
+  together({});
+}
+
+TEST(Together, TheFirstExceptionInTheListIsRethrownAfterAllHaveEnded) {
+  for (const int threads : {1, 4}) {
+    std::atomic<int> ended = 0;
+    std::vector<std::function<void()>> tasks;
+    for (int task = 0; task < 20; ++task) {
+      tasks.emplace_back([&ended, task] {
+        ++ended;
+        if (task % 7 == 3) throw std::runtime_error(std::to_string(task));
+      });
+    }
+    std::string message;
+    try {
+      with_team(threads, [&] { together(tasks); });
+    } catch (const std::runtime_error& error) {
+      message = error.what();
+    }
+    EXPECT_EQ(message, "3");
+    EXPECT_EQ(ended, 20);
+  }
 }
 
 }  // namespace
