@@ -1,5 +1,7 @@
 #include "geometry/shapes/solids.h"
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 #include <utility>
 
@@ -43,6 +45,33 @@ NurbsSurface<3> parallelogram(const Point3& corner, const Vector3& a, const Vect
   return NurbsSurface<3>::from_points(KnotVector::bezier(1), KnotVector::bezier(1), points);
 }
 
+/// The part of the unit sphere above the face z = 1 of the cube, u along x and v along y (J. E. Cobb, Tiling the sphere
+/// with rational Bezier patches, University of Utah, 1988). By symmetry a quarter of the net says everything.
+NurbsSurface<3> sixth_of_unit_sphere() {
+  const double t = std::numbers::sqrt3;
+  const double d = std::numbers::sqrt2;
+  using Quarter = std::array<std::array<Eigen::Vector4d, 3>, 3>;
+  const Quarter quarter{{{{{4.0 * (1.0 - t), 4.0 * (1.0 - t), 4.0 * (t - 1.0), 4.0 * (3.0 - t)},
+                           {-d, d * (t - 4.0), d * (4.0 - t), d * (3.0 * t - 2.0)},
+                           {0.0, 4.0 * (1.0 - 2.0 * t) / 3.0, 4.0 * (2.0 * t - 1.0) / 3.0, 4.0 * (5.0 - t) / 3.0}}},
+                         {{{d * (t - 4.0), -d, d * (4.0 - t), d * (3.0 * t - 2.0)},
+                           {(2.0 - 3.0 * t) / 2.0, (2.0 - 3.0 * t) / 2.0, (t + 6.0) / 2.0, (t + 6.0) / 2.0},
+                           {0.0, d * (2.0 * t - 7.0) / 3.0, 5.0 * d * t / 3.0, d * (t + 6.0) / 3.0}}},
+                         {{{4.0 * (1.0 - 2.0 * t) / 3.0, 0.0, 4.0 * (2.0 * t - 1.0) / 3.0, 4.0 * (5.0 - t) / 3.0},
+                           {d * (2.0 * t - 7.0) / 3.0, 0.0, 5.0 * d * t / 3.0, d * (t + 6.0) / 3.0},
+                           {0.0, 0.0, 4.0 * (5.0 - t) / 3.0, 4.0 * (5.0 * t - 1.0) / 9.0}}}}};
+  HomogeneousPoints<3> net(4, 25);
+  for (int j = 0; j < 5; ++j)
+    for (int i = 0; i < 5; ++i) {
+      Eigen::Vector4d point =
+          quarter[static_cast<std::size_t>(std::min(j, 4 - j))][static_cast<std::size_t>(std::min(i, 4 - i))];
+      if (i > 2) point.x() = -point.x();
+      if (j > 2) point.y() = -point.y();
+      net.col(i + 5 * j) = point;
+    }
+  return {KnotVector::bezier(4), KnotVector::bezier(4), net};
+}
+
 Boundary<3> turned_solid(double base_radius, double top_radius, double height, const Point3& base) {
   const Point3 top_centre = base + Vector3(0.0, 0.0, height);
   const NurbsCurve<3> bottom_rim = horizontal_circle(base_radius, base);
@@ -61,6 +90,27 @@ Boundary<3> sphere(double radius, const Point3& centre) {
   checks::finite("sphere", "centre", centre);
   Boundary<3> result = ellipsoid(Vector3::Constant(radius), centre);
   result.patches[0].name = "sphere";
+  return result;
+}
+
+Boundary<3> six_patch_sphere(double radius, const Point3& centre) {
+  checks::positive("sphere", "radius", radius);
+  checks::finite("sphere", "centre", centre);
+  const NurbsSurface<3> face = sixth_of_unit_sphere();
+  const std::array<const char*, 6> names{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+  Boundary<3> result;
+  for (int i = 0; i < 6; ++i) {
+    const int axis = i / 2;
+    // Rotations: a half turn about x for the lower side, then z to the axis in the cyclic order.
+    const double side = i % 2 == 0 ? -1.0 : 1.0;
+    AffineMap<3> place;
+    place.linear.setZero();
+    place.linear((axis + 1) % 3, 0) = radius;
+    place.linear((axis + 2) % 3, 1) = side * radius;
+    place.linear(axis, 2) = side * radius;
+    place.translation = centre;
+    result.patches.push_back({names[static_cast<std::size_t>(i)], transform(face, place)});
+  }
   return result;
 }
 
@@ -84,6 +134,17 @@ Boundary<3> torus(double major_radius, double minor_radius, const Point3& centre
   }
   const NurbsSurface<3> ring = revolve_about_z(circle_curve(minor_radius, Point2(major_radius, 0.0)));
   return {{{"torus", transform(ring, translation<3>(centre))}}};
+}
+
+Boundary<3> sixteen_patch_torus(double major_radius, double minor_radius, const Point3& centre) {
+  const Boundary<3> ring = torus(major_radius, minor_radius, centre);
+  Boundary<3> result;
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i)
+      result.patches.push_back({fmt::format("torus_{}_{}", i + 1, j + 1),
+                                restrict_to(surface_of(ring.patches[0].shape), Interval{0.25 * i, 0.25 * (i + 1)},
+                                            Interval{0.25 * j, 0.25 * (j + 1)})});
+  return result;
 }
 
 Boundary<3> cylinder(double radius, double height, const Point3& base) {

@@ -11,11 +11,19 @@ namespace isorim::geometry {
 /// v edges are degenerate; eight biquadratic Bézier elements.
 Boundary<3> sphere(double radius, const Point3& centre = Point3::Zero());
 
+/// The same sphere without poles: six patches "x_min", "x_max", .. of one biquartic element each, a cube's faces blown
+/// up along great circles (Cobb 1988). The weights are alike on common edges, whose parameters agree.
+Boundary<3> six_patch_sphere(double radius, const Point3& centre = Point3::Zero());
+
 /// One patch "ellipsoid": the unit sphere stretched to the semi-axes radii along x, y, z.
 Boundary<3> ellipsoid(const Vector3& radii, const Point3& centre = Point3::Zero());
 
 /// One patch "torus" about the z axis: u the longitude, v about the tube. Throws also unless minor < major.
 Boundary<3> torus(double major_radius, double minor_radius, const Point3& centre = Point3::Zero());
+
+/// The same torus as sixteen patches "torus_1_1", .., "torus_4_4" of one biquadratic element each; the first number
+/// counts along the longitude.
+Boundary<3> sixteen_patch_torus(double major_radius, double minor_radius, const Point3& centre = Point3::Zero());
 
 /// Patches "bottom", "side", "top", the axis along z; `base` is the centre of the bottom disc. The discs are fans.
 Boundary<3> cylinder(double radius, double height, const Point3& base = Point3::Zero());

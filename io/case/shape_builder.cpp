@@ -328,10 +328,14 @@ struct SurfaceBuilder {
   using Result = Boundary<3>;
   Meshes& meshes;
 
-  Result operator()(const SphereKeys& keys) const { return geometry::sphere(keys.radius, keys.centre); }
+  Result operator()(const SphereKeys& keys) const {
+    return keys.patches == 6 ? geometry::six_patch_sphere(keys.radius, keys.centre)
+                             : geometry::sphere(keys.radius, keys.centre);
+  }
   Result operator()(const EllipsoidKeys& keys) const { return geometry::ellipsoid(keys.radii, keys.centre); }
   Result operator()(const TorusKeys& keys) const {
-    return geometry::torus(keys.major_radius, keys.minor_radius, keys.centre);
+    return keys.patches == 16 ? geometry::sixteen_patch_torus(keys.major_radius, keys.minor_radius, keys.centre)
+                              : geometry::torus(keys.major_radius, keys.minor_radius, keys.centre);
   }
   Result operator()(const CylinderKeys& keys) const { return geometry::cylinder(keys.radius, keys.height, keys.base); }
   Result operator()(const ConeKeys& keys) const {

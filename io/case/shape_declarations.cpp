@@ -319,11 +319,28 @@ const Schema<RegionKeys>& schema<RegionKeys>() {
 
 // --- Solids ---------------------------------------------------------------------------------------------------
 
-ISORIM_DECLARE(SphereKeys,
-               with_common_keys(Schema<SphereKeys>("sphere", "A sphere, exact as a surface of revolution.")
-                                    .key("radius", &SphereKeys::radius,
-                                         {.text = "Radius.", .range = Range::above(0), .presence = required})
-                                    .key("centre", &SphereKeys::centre, {.text = "Centre."})))
+/// One patch, or as many as the other form of the shape has.
+template <class T>
+Schema<T> with_patches(Schema<T> own, int other, const std::string& text) {
+  return own.key("patches", &T::patches, {.text = text})
+      .check([other](const T& keys, const KeyPlace& where, Complaints& complaints) {
+        if (keys.patches == 1 || keys.patches == other) return;
+        complaints.add(where, fmt::format("found patches = {}; expected 1 or {}", keys.patches, other));
+      });
+}
+
+template <>
+const Schema<SphereKeys>& schema<SphereKeys>() {
+  static const auto declared =
+      with_patches(with_common_keys(Schema<SphereKeys>("sphere", "A sphere, exact.")
+                                        .key("radius", &SphereKeys::radius,
+                                             {.text = "Radius.", .range = Range::above(0), .presence = required})
+                                        .key("centre", &SphereKeys::centre, {.text = "Centre."})),
+                   6,
+                   "1: a surface of revolution with two poles; 6: a cube's faces blown up, without poles, \"x_min\" to "
+                   "\"z_max\", of degree 4.");
+  return declared;
+}
 
 ISORIM_DECLARE(EllipsoidKeys,
                with_common_keys(Schema<EllipsoidKeys>("ellipsoid", "An ellipsoid along the axes.")
@@ -333,7 +350,7 @@ ISORIM_DECLARE(EllipsoidKeys,
 
 template <>
 const Schema<TorusKeys>& schema<TorusKeys>() {
-  static const auto declared =
+  static const auto declared = with_patches(
       with_common_keys(Schema<TorusKeys>("torus", "A ring torus about an axis parallel to z.")
                            .key("major_radius", &TorusKeys::major_radius,
                                 {.text = "From the centre to the middle of the tube; above the minor radius.",
@@ -347,7 +364,8 @@ const Schema<TorusKeys>& schema<TorusKeys>() {
             complaints.add(where, fmt::format("found minor_radius = {} and major_radius = {}; expected minor_radius < "
                                               "major_radius, else the torus meets itself",
                                               torus.minor_radius, torus.major_radius));
-          });
+          }),
+      16, "1: closed in both directions; 16: its elements, \"torus_1_1\" to \"torus_4_4\".");
   return declared;
 }
 

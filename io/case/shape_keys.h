@@ -170,6 +170,7 @@ using PlaneRegionKeys = std::variant<RegionKeys, CircleKeys, EllipseKeys, Rectan
 struct SphereKeys : SolidKeys {
   double radius = 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  int patches = 1;
 };
 
 struct EllipsoidKeys : SolidKeys {
@@ -181,6 +182,7 @@ struct TorusKeys : SolidKeys {
   double major_radius = 0.0;
   double minor_radius = 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  int patches = 1;
 };
 
 struct CylinderKeys : SolidKeys {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "solver/bem/patch_space.h"
 #include "solver/bem/smoothness.h"
 #include "solver/bem/tensor_space.h"
+#include "solver/bem/trimmed_space.h"
 
 namespace isorim::solver {
 
@@ -25,6 +27,7 @@ using geometry::NurbsSurface;
 using geometry::OrientedBoundary;
 using geometry::Patch;
 using geometry::Point;
+using geometry::TrimmedSurface;
 
 namespace {
 
@@ -89,8 +92,10 @@ NurbsSurface<3> refined(const NurbsSurface<3>& surface, int levels) {
 }
 
 geometry::SurfaceShape refined(const geometry::SurfaceShape& shape, int levels) {
+  if (const auto* face = std::get_if<TrimmedSurface>(&shape))
+    return TrimmedSurface(refined(face->surface(), levels), face->loops());
   if (const auto* surface = std::get_if<NurbsSurface<3>>(&shape)) return refined(*surface, levels);
-  throw InputError("fields on trimmed surfaces are not available");
+  throw InputError("fields on extracted surfaces are not available");
 }
 
 /// The group of every element.
@@ -106,17 +111,19 @@ std::vector<int> element_groups(const ElementTable<Dim>& table, const Discretisa
   return groups;
 }
 
-/// The elements of a patch by their groups; `stride` and `count` describe the grid.
+/// The groups of a patch's cells; no_group where nothing is kept.
 struct GroupGrid {
-  std::span<const int> groups;
+  static constexpr int no_group = std::numeric_limits<int>::min();
+  std::vector<int> groups;
   std::array<std::size_t, 2> count{1, 1};
 
   int at(int d, std::size_t across, std::size_t along) const {
     return groups[d == 0 ? across + count[0] * along : along + count[0] * across];
   }
+  static bool differ(int a, int b) { return a != b && a != no_group && b != no_group; }
   bool differ(int d, std::size_t before, std::size_t after) const {
     for (std::size_t along = 0; along < count[static_cast<std::size_t>(1 - d)]; ++along)
-      if (at(d, before, along) != at(d, after, along)) return true;
+      if (differ(at(d, before, along), at(d, after, along))) return true;
     return false;
   }
 };
@@ -133,36 +140,63 @@ LineSpace field_line(const KnotVector& geometry, int degree, std::span<const dou
   return line_space(field_knots(geometry, degree, breakpoints, jumps), periodic);
 }
 
-PatchSpace<2> patch_space(const NurbsCurve<2>& curve, const PatchRequest& request, std::span<const int> groups,
-                          std::span<const BezierElement<2>> elements) {
+/// A patch in the table of refined elements.
+template <int Dim>
+struct PatchElements {
+  std::span<const BezierElement<Dim>> elements;
+  std::span<const geometry::TrimmedRegion> regions;
+  /// One for each element.
+  std::span<const int> groups;
+};
+
+PatchSpace<2> patch_space(const NurbsCurve<2>& curve, const PatchRequest& request, const PatchElements<2>& refined) {
   const NurbsCurve<2> shape = clamp(curve);
   const PatchSmoothness<2> smooth = smoothness(shape);
   const std::vector<double> breakpoints = bisected(shape.knots().breakpoints(), request.refine);
-  const GroupGrid grid{groups, {groups.size(), 1}};
+  const GroupGrid grid{{refined.groups.begin(), refined.groups.end()}, {refined.groups.size(), 1}};
   LineSpace line = field_line(shape.knots(), request.degree_over(shape.knots()), breakpoints, smooth.creases[0],
                               smooth.closed[0], grid, 0);
-  return patch_space<2>(tensor_space(shape, {std::move(line)}), elements);
+  return patch_space<2>(tensor_space(shape, {std::move(line)}), refined.elements);
 }
 
-PatchSpace<3> patch_space(const NurbsSurface<3>& surface, const PatchRequest& request, std::span<const int> groups,
-                          std::span<const BezierElement<3>> elements) {
+/// The cells of a surface by their groups, some without one.
+GroupGrid group_grid(const std::array<std::vector<double>, 2>& breakpoints, const PatchElements<3>& refined) {
+  GroupGrid grid;
+  for (std::size_t d = 0; d < 2; ++d) grid.count[d] = breakpoints[d].size() - 1;
+  grid.groups.assign(grid.count[0] * grid.count[1], GroupGrid::no_group);
+  const auto index = [&](std::size_t d, double u) {
+    const auto& lines = breakpoints[d];
+    return static_cast<std::size_t>(std::upper_bound(lines.begin() + 1, lines.end() - 1, u) - lines.begin()) - 1;
+  };
+  for (std::size_t e = 0; e < refined.elements.size(); ++e) {
+    const auto& domain = refined.elements[e].domain;
+    grid.groups[index(0, domain[0].middle()) + grid.count[0] * index(1, domain[1].middle())] = refined.groups[e];
+  }
+  return grid;
+}
+
+TensorSpace<3> whole_space(const NurbsSurface<3>& surface, const PatchRequest& request,
+                           const PatchElements<3>& refined) {
   const NurbsSurface<3> shape = clamp(surface);
   const PatchSmoothness<3> smooth = smoothness(shape);
-  const std::vector<double> in_u = bisected(shape.knots_u().breakpoints(), request.refine);
-  const std::vector<double> in_v = bisected(shape.knots_v().breakpoints(), request.refine);
-  const GroupGrid grid{groups, {in_u.size() - 1, in_v.size() - 1}};
-  return patch_space<3>(tensor_space(shape,
-                                     {field_line(shape.knots_u(), request.degree_over(shape.knots_u()), in_u,
-                                                 smooth.creases[0], smooth.closed[0], grid, 0),
-                                      field_line(shape.knots_v(), request.degree_over(shape.knots_v()), in_v,
-                                                 smooth.creases[1], smooth.closed[1], grid, 1)},
-                                     smooth),
-                        elements);
+  const std::array<std::vector<double>, 2> breakpoints{bisected(shape.knots_u().breakpoints(), request.refine),
+                                                       bisected(shape.knots_v().breakpoints(), request.refine)};
+  const GroupGrid grid = group_grid(breakpoints, refined);
+  const auto line = [&](std::size_t d) {
+    const KnotVector& knots = shape.knots(d == 0 ? geometry::Direction::u : geometry::Direction::v);
+    return field_line(knots, request.degree_over(knots), breakpoints[d], smooth.creases[d], smooth.closed[d], grid,
+                      static_cast<int>(d));
+  };
+  return tensor_space(shape, {line(0), line(1)}, smooth);
 }
 
-PatchSpace<3> patch_space(const geometry::SurfaceShape& shape, const PatchRequest& request, std::span<const int> groups,
-                          std::span<const BezierElement<3>> elements) {
-  return patch_space(std::get<NurbsSurface<3>>(shape), request, groups, elements);
+PatchSpace<3> patch_space(const geometry::SurfaceShape& shape, const PatchRequest& request,
+                          const PatchElements<3>& elements) {
+  if (const auto* face = std::get_if<TrimmedSurface>(&shape))
+    return trimmed_space(whole_space(face->surface(), request, elements),
+                         TrimmedSurface(refined(face->surface(), request.refine), face->loops()), elements.elements,
+                         elements.regions);
+  return patch_space<3>(whole_space(std::get<NurbsSurface<3>>(shape), request, elements), elements.elements);
 }
 
 /// Appends a patch whose elements begin at `first_element` of the table.
@@ -201,8 +235,14 @@ FieldSpace<Dim> field_space(const OrientedBoundary<Dim>& oriented, const Discret
     const auto& elements = space.table.elements;
     std::size_t count = 0;
     while (first + count < elements.size() && elements[first + count].patch == static_cast<std::int32_t>(i)) ++count;
-    append<Dim>(space, patch_space(boundary.patches[i].shape, requests[i], std::span(groups).subspan(first, count),
-                                   std::span<const BezierElement<Dim>>(elements).subspan(first, count)));
+    const PatchElements<Dim> refined{std::span<const BezierElement<Dim>>(elements).subspan(first, count),
+                                     space.table.regions, std::span<const int>(groups).subspan(first, count)};
+    try {
+      append<Dim>(space, patch_space(boundary.patches[i].shape, requests[i], refined));
+    } catch (Error& error) {
+      error.add_context(fmt::format("patch \"{}\"", boundary.patches[i].name));
+      throw;
+    }
     first += count;
   }
   return space;

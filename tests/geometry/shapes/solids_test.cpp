@@ -62,6 +62,31 @@ TEST(Solids, Sphere) {
   EXPECT_EQ(bezier_elements(solid).elements.size(), 8U);
 }
 
+TEST(Solids, SphereOfSixPatches) {
+  const Point3 centre(0.5, -2.0, 1.0);
+  const Boundary<3> solid = six_patch_sphere(1.5, centre);
+  ASSERT_EQ(solid.patches.size(), 6U);
+  for (const Patch<3>& patch : solid.patches)
+    expect_on_surface(
+        patch, [&](const Point3& x) { return (x - centre).norm() / 1.5 - 1.0; }, 2e-15);
+  expect_solid(solid, 9.0 * pi, 4.5 * pi);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {-1, 1}) {
+      const Patch<3>& patch = solid.patches[static_cast<std::size_t>(2 * axis + (side > 0 ? 1 : 0))];
+      EXPECT_EQ(patch.name, std::string(1, "xyz"[axis]) + (side > 0 ? "_max" : "_min"));
+      const Point3 middle = evaluate(surface_of(patch.shape), Point2(0.5, 0.5));
+      EXPECT_LT((middle - centre - 1.5 * side * Vector3::Unit(axis)).norm(), 1e-15);
+    }
+}
+
+TEST(Solids, TorusOfSixteenPatches) {
+  const Boundary<3> solid = sixteen_patch_torus(2.0, 0.5, Point3(1, 1, 1));
+  ASSERT_EQ(solid.patches.size(), 16U);
+  EXPECT_EQ(solid.patches[1].name, "torus_2_1");
+  EXPECT_EQ(bezier_elements(solid).elements.size(), 16U);
+  expect_solid(solid, 4.0 * pi * pi, pi * pi);
+}
+
 TEST(Solids, Ellipsoid) {
   const Vector3 radii(2.0, 1.0, 0.25);
   const Boundary<3> solid = ellipsoid(radii);

@@ -87,6 +87,12 @@ const std::vector<ShapeCase> plane{
 
 const std::vector<ShapeCase> space{
     {"Sphere", "type = 'sphere'\nradius = 3\ncentre = [1, 2, 3]", 36 * pi, 36 * pi, {1, 2, 3}},
+    {"SphereOfSixPatches", "type = 'sphere'\nradius = 3\ncentre = [1, 2, 3]\npatches = 6", 36 * pi, 36 * pi, {1, 2, 3}},
+    {"TorusOfSixteenPatches",
+     "type = 'torus'\nmajor_radius = 2\nminor_radius = 1\npatches = 16",
+     8 * pi* pi,
+     4 * pi* pi,
+     {0, 0, 0}},
     {"Ellipsoid", "type = 'ellipsoid'\nradii = [1, 1, 1]", 4 * pi, 4 * pi / 3, {0, 0, 0}},
     {"Torus", "type = 'torus'\nmajor_radius = 2\nminor_radius = 1", 8 * pi* pi, 4 * pi* pi, {0, 0, 0}},
     {"Cylinder", "type = 'cylinder'\nradius = 1\nheight = 2\nbase = [0, 0, 1]", 6 * pi, 2 * pi, {0, 0, 2}},
