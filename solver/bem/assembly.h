@@ -94,6 +94,14 @@ class Assembler {
   void add_target_terms(int point, AssemblyRoom<Dim>& room) const;
 
   quadrature::Target<Dim> target(int point) const;
+
+  /// What goes with an element's nodes: kept for kept rules, else in the room until the next call.
+  struct NodeData {
+    const NodeBasis<Dim>* basis;
+    const ConditionValues<Dim>* values;
+  };
+  NodeData node_data(int element, const quadrature::NodeView<Dim>& nodes, AssemblyRoom<Dim>& room) const;
+
   /// What the loads give to the right side: components x collocation points.
   Eigen::MatrixXd load_potentials(double tolerance, int threads) const;
 
@@ -103,11 +111,6 @@ class Assembler {
     NodeBasis<Dim> basis;
     ConditionValues<Dim> values;
   };
-  struct NodeData {
-    const NodeBasis<Dim>* basis;
-    const ConditionValues<Dim>* values;
-  };
-  NodeData node_data(int element, const quadrature::NodeView<Dim>& nodes, AssemblyRoom<Dim>& room) const;
   const KeptNodes* kept_nodes(int element, const quadrature::NodeView<Dim>& nodes, AssemblyRoom<Dim>& room) const;
   /// Kernels times weights; the single layer is left out where nothing needs it.
   void weigh_kernels(const quadrature::Target<Dim>& target, int element, const quadrature::NodeView<Dim>& nodes,

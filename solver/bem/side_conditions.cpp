@@ -24,8 +24,13 @@ using quadrature::IntegrandFactory;
 
 /// Imbalances below this part of the absolute sum are taken for rounding of the data.
 constexpr double balance_tolerance = 1e-6;
-/// Of a test function times a motion on an element.
+/// Of the rules for functions times motions: as for targets so many radii of the element's sphere away from it.
 constexpr double rule_distance = 0.5;
+
+template <int Dim>
+quadrature::NodeView<Dim> smooth_rule(const quadrature::TargetRules<Dim>& rules, int element) {
+  return rules.far_nodes(element, rule_distance * rules.sphere(element).radius);
+}
 
 template <int Dim>
 using PointColumns = Eigen::Ref<const geometry::Points<Dim>>;
@@ -147,7 +152,7 @@ template <int Dim>
 void add_element_row(RowSource<Dim>& source, int element, int component, int components,
                      const geometry::Vector<Dim>& axis, const RigidMotion<Dim>& motion,
                      const std::vector<double>& density, double factor, Eigen::Ref<Eigen::RowVectorXd> row) {
-  const quadrature::NodeView<Dim> nodes = source.rules.far_nodes(element, rule_distance);
+  const quadrature::NodeView<Dim> nodes = smooth_rule(source.rules, element);
   const std::size_t n = nodes.size();
   source.integrand.resize(n);
   for (std::size_t q = 0; q < n; ++q) {
@@ -187,7 +192,7 @@ void fill_flux_row(const Problem<Dim>& problem, RowSource<Dim>& source, const Ri
   ConditionValues<Dim> values;
   for (std::size_t e = 0; e < problem.condition_of.size(); ++e) {
     const Condition<Dim>& condition = problem.conditions[static_cast<std::size_t>(problem.condition_of[e])];
-    const quadrature::NodeView<Dim> nodes = source.rules.far_nodes(static_cast<int>(e), rule_distance);
+    const quadrature::NodeView<Dim> nodes = smooth_rule(source.rules, static_cast<int>(e));
     data.evaluate(problem.condition_of[e], nodes, values);
     for (int c = 0; c < components; ++c) {
       const auto index = static_cast<std::size_t>(c);
@@ -213,7 +218,7 @@ template <int Dim>
 double measure_of(const FieldSpace<Dim>& space, const quadrature::TargetRules<Dim>& rules) {
   double sum = 0.0;
   for (std::size_t e = 0; e < space.table.elements.size(); ++e) {
-    for (const double weight : rules.far_nodes(static_cast<int>(e), rule_distance).weight) sum += weight;
+    for (const double weight : smooth_rule(rules, static_cast<int>(e)).weight) sum += weight;
   }
   return sum;
 }

@@ -6,6 +6,7 @@
 #include "quadrature/target_rules.h"
 #include "solver/bem/assembly.h"
 #include "solver/bem/coefficients.h"
+#include "solver/bem/compressed_system.h"
 #include "solver/bem/dense_system.h"
 #include "solver/bem/side_conditions.h"
 
@@ -30,6 +31,28 @@ Eigen::VectorXd constant_at_infinity(const SideConditions<Dim>& sides, const Eig
   return sum;
 }
 
+template <int Dim>
+Eigen::VectorXd by_dense(const Assembler<Dim>& assembler, const SideConditions<Dim>& sides, const SolveOptions& options,
+                         Solution<Dim>& solution) {
+  const DenseSystem system = assemble_dense(assembler, sides, options);
+  DenseSolution found = solve_dense(system, options.threads);
+  solution.method = "dense";
+  solution.residual = found.residual;
+  solution.matrix_memory = static_cast<std::size_t>(system.matrix.size()) * sizeof(double);
+  return std::move(found.values);
+}
+
+template <int Dim>
+Eigen::VectorXd by_compressed(const Assembler<Dim>& assembler, const SideConditions<Dim>& sides,
+                              const SolveOptions& options, Solution<Dim>& solution) {
+  CompressedSolution found = solve_compressed(assemble_compressed(assembler, sides, options), options);
+  solution.method = "compressed";
+  solution.iterations = found.iterations;
+  solution.residual = found.residual;
+  solution.matrix_memory = found.memory;
+  return std::move(found.values);
+}
+
 }  // namespace
 
 template <int Dim>
@@ -42,20 +65,20 @@ Solution<Dim> solve(const Problem<Dim>& problem, const FieldSpace<Dim>& space, c
   const double flux_scale = Assembler<Dim>(problem, space, rules, {}).flux_scale();
   const SideConditions<Dim> sides = side_conditions(problem, space, rules, flux_scale, options.threads);
   const Assembler<Dim> assembler(problem, space, rules, sides.flux_modes);
-  const DenseSystem system = assemble_dense(assembler, sides, options);
-  const DenseSolution found = solve_dense(system, options.threads);
-  FieldCoefficients coefficients = field_coefficients(assembler, found.values.head(assembler.size()));
+  const bool is_compressed =
+      options.method == SolveMethod::compressed ||
+      (options.method == SolveMethod::automatic && assembler.size() > SolveOptions::automatic_limit);
 
   Solution<Dim> solution;
+  solution.messages = sides.messages;
+  solution.unknowns = static_cast<std::size_t>(assembler.size()) + sides.count();
+  const Eigen::VectorXd found = is_compressed ? by_compressed(assembler, sides, options, solution)
+                                              : by_dense(assembler, sides, options, solution);
+  FieldCoefficients coefficients = field_coefficients(assembler, found.head(assembler.size()));
   solution.potential = std::move(coefficients.potential);
   solution.flux = std::move(coefficients.flux);
   solution.at_infinity =
-      constant_at_infinity(sides, found.values.tail(system.matrix.rows() - assembler.size()), assembler.components());
-  solution.unknowns = static_cast<std::size_t>(system.matrix.rows());
-  solution.method = "dense";
-  solution.residual = found.residual;
-  solution.matrix_memory = static_cast<std::size_t>(system.matrix.size()) * sizeof(double);
-  solution.messages = sides.messages;
+      constant_at_infinity(sides, found.tail(static_cast<Eigen::Index>(sides.count())), assembler.components());
   return solution;
 }
 

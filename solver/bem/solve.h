@@ -20,6 +20,8 @@ enum class SolveMethod {
 };
 
 struct SolveOptions {
+  /// From here on the compressed matrix is faster (solver/README.md).
+  static constexpr int automatic_limit = 5000;
   SolveMethod method = SolveMethod::automatic;
   /// Relative: of the compression, of the iterations, and what the quadrature aims at.
   double tolerance = 1e-10;

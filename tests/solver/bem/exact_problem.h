@@ -143,7 +143,7 @@ Errors errors_of(const Solution<Dim>& solution, const ExactField<Dim>& field, co
   double t_norm = 0.0;
   std::vector<double> basis;
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
-    const quadrature::NodeView<Dim> nodes = rules.far_nodes(e, 0.5);
+    const quadrature::NodeView<Dim> nodes = rules.far_nodes(e, 0.5 * rules.sphere(e).radius);
     const auto functions = space.functions_of(e);
     basis.resize(functions.size());
     for (std::size_t q = 0; q < nodes.size(); ++q) {
@@ -191,7 +191,7 @@ ExactField<Dim> without_motions(const ExactField<Dim>& field, const Problem<Dim>
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(count, count);
   Eigen::VectorXd work = Eigen::VectorXd::Zero(count);
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
-    const quadrature::NodeView<Dim> nodes = rules.far_nodes(e, 0.5);
+    const quadrature::NodeView<Dim> nodes = rules.far_nodes(e, 0.5 * rules.sphere(e).radius);
     for (std::size_t q = 0; q < nodes.size(); ++q) {
       geometry::Point<Dim> y;
       for (int d = 0; d < Dim; ++d) y[d] = nodes.position[static_cast<std::size_t>(d)][q];

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "solver/bem/assembly.h"
+#include "solver/bem/side_conditions.h"
+#include "solver/bem/solve.h"
+#include "solver/linear/hierarchical_matrix.h"
+
+namespace isorim::solver {
+
+/// The equations with the coefficients of the functions in blocks of low rank, and those of the side conditions apart:
+///   [matrix columns; rows 0] [x; extra] = [right; right_of_rows].
+struct CompressedSystem {
+  std::shared_ptr<const HierarchicalMatrix> matrix;
+  Eigen::MatrixXd columns;
+  Eigen::MatrixXd rows;
+  Eigen::VectorXd right;
+};
+
+/// Blocks whose functions are far from their points are made from the kernel at the quadrature nodes (one evaluation a
+/// node instead of an integral for each entry), within options.tolerance in the Frobenius norm of the whole; near ones
+/// by the code of dense systems, element by element for all functions at once. The sums over the whole boundary that
+/// the removal of constants and the known data need are taken directly, with few nodes for far elements. The numbers do
+/// not depend on how many threads there are.
+template <int Dim>
+CompressedSystem assemble_compressed(const Assembler<Dim>& assembler, const SideConditions<Dim>& sides,
+                                     const SolveOptions& options);
+
+struct CompressedSolution {
+  Eigen::VectorXd values;
+  int iterations = 0;
+  double residual = 0.0;
+  /// Bytes of the matrix and of its factors.
+  std::size_t memory = 0;
+};
+
+/// GMRES to options.tolerance, preconditioned by a hierarchical LU factorisation at a loose tolerance (with the side
+/// conditions eliminated from it). Throws NumericalError, naming residual and iterations, if it does not converge.
+CompressedSolution solve_compressed(const CompressedSystem& system, const SolveOptions& options);
+
+}  // namespace isorim::solver

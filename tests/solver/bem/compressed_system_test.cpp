@@ -1,0 +1,98 @@
+#include "solver/bem/compressed_system.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "geometry/shapes/regions.h"
+#include "geometry/shapes/solids.h"
+#include "solver/bem/solve.h"
+#include "tests/solver/bem/exact_problem.h"
+
+namespace isorim::solver {
+namespace {
+
+using test::ExactField;
+using Kinds = std::vector<ConditionKind>;
+constexpr auto value = ConditionKind::value;
+constexpr auto flux = ConditionKind::flux;
+constexpr auto robin = ConditionKind::robin;
+
+template <int Dim>
+ExactField<Dim> quadratic_potential() {
+  return {[](const geometry::Point<Dim>& x) { return Eigen::VectorXd::Constant(1, x[0] * x[0] - x[1] * x[1] + x[0]); },
+          [](const geometry::Point<Dim>& x) {
+            Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(1, Dim);
+            gradient(0, 0) = 2.0 * x[0] + 1.0;
+            gradient(0, 1) = -2.0 * x[1];
+            return gradient;
+          }};
+}
+
+template <int Dim>
+ExactField<Dim> shear() {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(Dim, Dim);
+  matrix(0, 1) = 0.7;
+  return test::linear_field<Dim>(matrix, Eigen::VectorXd::Constant(Dim, 0.2));
+}
+
+template <int Dim>
+Solution<Dim> solve_by(SolveMethod method, const Problem<Dim>& problem, const FieldSpace<Dim>& space, double tolerance,
+                       int threads = 0) {
+  SolveOptions options;
+  options.method = method;
+  options.tolerance = tolerance;
+  options.threads = threads;
+  return solve(problem, space, options);
+}
+
+/// The compressed solution is the dense one up to the tolerance times the condition of the problem.
+template <int Dim>
+void expect_same(const Problem<Dim>& problem, const FieldSpace<Dim>& space, double tolerance, const std::string& what) {
+  const Solution<Dim> dense = solve_by(SolveMethod::dense, problem, space, tolerance);
+  const Solution<Dim> compressed = solve_by(SolveMethod::compressed, problem, space, tolerance);
+  EXPECT_EQ(compressed.method, "compressed");
+  EXPECT_EQ(compressed.unknowns, dense.unknowns);
+  EXPECT_LT(compressed.iterations, 10) << what;
+  EXPECT_LE(compressed.residual, tolerance) << what;
+  EXPECT_LT((compressed.potential - dense.potential).norm(), 30.0 * tolerance * dense.potential.norm()) << what;
+  EXPECT_LT((compressed.flux - dense.flux).norm(), 30.0 * tolerance * (dense.flux.norm() + dense.potential.norm()))
+      << what;
+  EXPECT_LT((compressed.at_infinity - dense.at_infinity).norm(), 30.0 * tolerance) << what;
+}
+
+TEST(CompressedSystem, GivesTheSolutionOfTheDenseOneInSpace) {
+  const FieldSpace<3> space = test::space_on(geometry::cube(1.0), 2, 2);
+  for (const Kinds& kinds : {Kinds{flux}, Kinds{robin, flux, value}}) {
+    const std::string what = std::to_string(static_cast<int>(kinds[0]));
+    expect_same(test::problem_from<3>(quadratic_potential<3>(), test::laplace_on(space), space, kinds), space, 1e-8,
+                what);
+  }
+  const FieldSpace<3> ball = test::space_on(geometry::sphere(1.0), 2, 1);
+  expect_same(test::problem_from<3>(shear<3>(), test::elasticity_on(ball), ball, {flux}), ball, 1e-6, "elasticity");
+}
+
+TEST(CompressedSystem, GivesTheSolutionOfTheDenseOneInThePlane) {
+  const FieldSpace<2> space = test::space_on(geometry::elliptic_disc({1.3, 0.9}), 3, 4);
+  for (const Kinds& kinds : {Kinds{value}, Kinds{flux}, Kinds{robin}}) {
+    expect_same(test::problem_from<2>(quadratic_potential<2>(), test::laplace_on(space), space, kinds), space, 1e-8,
+                "potential");
+    expect_same(test::problem_from<2>(shear<2>(), test::elasticity_on(space), space, kinds), space, 1e-8, "elasticity");
+  }
+  // A known constant at infinity.
+  const ExactField<2> constant = test::linear_field<2>(Eigen::RowVector2d::Zero(), Eigen::VectorXd::Constant(1, 2.5));
+  expect_same(test::problem_from<2>(constant, test::laplace_on(space), space, {robin}, true), space, 1e-8, "exterior");
+}
+
+TEST(CompressedSystem, AnyNumberOfThreadsGivesTheSameBits) {
+  const FieldSpace<3> space = test::space_on(geometry::cube(1.0), 2, 2);
+  const auto problem = test::problem_from<3>(quadratic_potential<3>(), test::laplace_on(space), space, {value, flux});
+  const Solution<3> one = solve_by(SolveMethod::compressed, problem, space, 1e-6, 1);
+  const Solution<3> three = solve_by(SolveMethod::compressed, problem, space, 1e-6, 3);
+  EXPECT_TRUE(one.potential == three.potential);
+  EXPECT_TRUE(one.flux == three.flux);
+}
+
+}  // namespace
+}  // namespace isorim::solver
