@@ -11,6 +11,7 @@
 
 #include "geometry/bezier/element_jet.h"
 #include "geometry/errors.h"
+#include "solver/bem/extracted_space.h"
 #include "solver/bem/patch_space.h"
 #include "solver/bem/smoothness.h"
 #include "solver/bem/tensor_space.h"
@@ -21,6 +22,8 @@ namespace isorim::solver {
 using geometry::BezierElement;
 using geometry::Boundary;
 using geometry::ElementTable;
+using geometry::ExtractedSurface;
+using geometry::ExtractionElement;
 using geometry::KnotVector;
 using geometry::NurbsCurve;
 using geometry::NurbsSurface;
@@ -94,8 +97,8 @@ NurbsSurface<3> refined(const NurbsSurface<3>& surface, int levels) {
 geometry::SurfaceShape refined(const geometry::SurfaceShape& shape, int levels) {
   if (const auto* face = std::get_if<TrimmedSurface>(&shape))
     return TrimmedSurface(refined(face->surface(), levels), face->loops());
-  if (const auto* surface = std::get_if<NurbsSurface<3>>(&shape)) return refined(*surface, levels);
-  throw InputError("fields on extracted surfaces are not available");
+  if (const auto* extracted = std::get_if<ExtractedSurface>(&shape)) return bisected(*extracted, levels);
+  return refined(std::get<NurbsSurface<3>>(shape), levels);
 }
 
 /// The group of every element.
@@ -143,10 +146,16 @@ LineSpace field_line(const KnotVector& geometry, int degree, std::span<const dou
 /// A patch in the table of refined elements.
 template <int Dim>
 struct PatchElements {
-  std::span<const BezierElement<Dim>> elements;
-  std::span<const geometry::TrimmedRegion> regions;
+  int patch = 0;
+  const ElementTable<Dim>& table;
+  std::size_t first = 0;
   /// One for each element.
   std::span<const int> groups;
+  const geometry::Topology<Dim>& topology;
+
+  std::span<const BezierElement<Dim>> elements() const {
+    return std::span(table.elements).subspan(first, groups.size());
+  }
 };
 
 PatchSpace<2> patch_space(const NurbsCurve<2>& curve, const PatchRequest& request, const PatchElements<2>& refined) {
@@ -156,11 +165,17 @@ PatchSpace<2> patch_space(const NurbsCurve<2>& curve, const PatchRequest& reques
   const GroupGrid grid{{refined.groups.begin(), refined.groups.end()}, {refined.groups.size(), 1}};
   LineSpace line = field_line(shape.knots(), request.degree_over(shape.knots()), breakpoints, smooth.creases[0],
                               smooth.closed[0], grid, 0);
-  return patch_space<2>(tensor_space(shape, {std::move(line)}), refined.elements);
+  return patch_space<2>(tensor_space(shape, {std::move(line)}), refined.elements());
+}
+
+std::array<std::vector<double>, 2> breakpoints_of(const NurbsSurface<3>& surface, const PatchRequest& request) {
+  return {bisected(surface.knots_u().breakpoints(), request.refine),
+          bisected(surface.knots_v().breakpoints(), request.refine)};
 }
 
 /// The cells of a surface by their groups, some without one.
-GroupGrid group_grid(const std::array<std::vector<double>, 2>& breakpoints, const PatchElements<3>& refined) {
+GroupGrid group_grid(const NurbsSurface<3>& surface, const PatchRequest& request, const PatchElements<3>& refined) {
+  const std::array<std::vector<double>, 2> breakpoints = breakpoints_of(surface, request);
   GroupGrid grid;
   for (std::size_t d = 0; d < 2; ++d) grid.count[d] = breakpoints[d].size() - 1;
   grid.groups.assign(grid.count[0] * grid.count[1], GroupGrid::no_group);
@@ -168,20 +183,18 @@ GroupGrid group_grid(const std::array<std::vector<double>, 2>& breakpoints, cons
     const auto& lines = breakpoints[d];
     return static_cast<std::size_t>(std::upper_bound(lines.begin() + 1, lines.end() - 1, u) - lines.begin()) - 1;
   };
-  for (std::size_t e = 0; e < refined.elements.size(); ++e) {
-    const auto& domain = refined.elements[e].domain;
+  const std::span<const BezierElement<3>> elements = refined.elements();
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const auto& domain = elements[e].domain;
     grid.groups[index(0, domain[0].middle()) + grid.count[0] * index(1, domain[1].middle())] = refined.groups[e];
   }
   return grid;
 }
 
-TensorSpace<3> whole_space(const NurbsSurface<3>& surface, const PatchRequest& request,
-                           const PatchElements<3>& refined) {
+TensorSpace<3> whole_space(const NurbsSurface<3>& surface, const PatchRequest& request, const GroupGrid& grid) {
   const NurbsSurface<3> shape = clamp(surface);
   const PatchSmoothness<3> smooth = smoothness(shape);
-  const std::array<std::vector<double>, 2> breakpoints{bisected(shape.knots_u().breakpoints(), request.refine),
-                                                       bisected(shape.knots_v().breakpoints(), request.refine)};
-  const GroupGrid grid = group_grid(breakpoints, refined);
+  const std::array<std::vector<double>, 2> breakpoints = breakpoints_of(shape, request);
   const auto line = [&](std::size_t d) {
     const KnotVector& knots = shape.knots(d == 0 ? geometry::Direction::u : geometry::Direction::v);
     return field_line(knots, request.degree_over(knots), breakpoints[d], smooth.creases[d], smooth.closed[d], grid,
@@ -190,13 +203,63 @@ TensorSpace<3> whole_space(const NurbsSurface<3>& surface, const PatchRequest& r
   return tensor_space(shape, {line(0), line(1)}, smooth);
 }
 
+/// The same functions with other numbers, at the end of the space.
+void append(PatchSpace<3>& space, const PatchSpace<3>& part) {
+  const int first_element = static_cast<int>(space.elements.size());
+  const std::int32_t first_function = static_cast<std::int32_t>(space.points.size());
+  for (FieldElement<3> element : part.elements) {
+    element.first += space.functions.size();
+    element.row += space.rows.size();
+    space.elements.push_back(element);
+  }
+  for (const std::int32_t function : part.functions) space.functions.push_back(first_function + function);
+  space.rows.insert(space.rows.end(), part.rows.begin(), part.rows.end());
+  for (const auto& point : part.points) space.points.push_back({first_element + point.element, point.place});
+}
+
+/// Whether the surface's own functions are what is asked for.
+bool takes_own_functions(const ExtractedSurface& surface, const PatchRequest& request) {
+  return request.refine == 0 && std::ranges::all_of(surface.elements(), [&](const ExtractionElement& element) {
+           const int least = std::min(element.degree[0], element.degree[1]);
+           const int most = std::max(element.degree[0], element.degree[1]);
+           return request.degree ? least == *request.degree && most == *request.degree : least >= 2;
+         });
+}
+
+/// A patch's space by the kind of its shape.
+struct SurfaceSpace {
+  const PatchRequest& request;
+  const PatchElements<3>& patch;
+
+  PatchSpace<3> operator()(const NurbsSurface<3>& surface) const {
+    return patch_space<3>(whole_space(surface, request, group_grid(surface, request, patch)), patch.elements());
+  }
+  PatchSpace<3> operator()(const TrimmedSurface& face) const {
+    return trimmed_space(whole_space(face.surface(), request, group_grid(face.surface(), request, patch)),
+                         TrimmedSurface(refined(face.surface(), request.refine), face.loops()), patch.elements(),
+                         patch.table.regions);
+  }
+  PatchSpace<3> operator()(const ExtractedSurface& surface) const {
+    if (takes_own_functions(surface, request))
+      return extracted_space(
+          surface, smooth_regions(surface, patch.patch, patch.topology.edges, patch.table, patch.first, patch.groups),
+          patch.elements());
+    // Every element by itself.
+    const std::size_t side = std::size_t{1} << request.refine;
+    PatchSpace<3> space;
+    for (std::size_t e = 0; e < surface.elements().size(); ++e) {
+      const std::span<const int> groups = patch.groups.subspan(e * side * side, side * side);
+      const GroupGrid grid{{groups.begin(), groups.end()}, {side, side}};
+      append(space, patch_space<3>(whole_space(bezier_surface(surface, static_cast<int>(e)), request, grid),
+                                   patch.elements().subspan(e * side * side, side * side)));
+    }
+    return space;
+  }
+};
+
 PatchSpace<3> patch_space(const geometry::SurfaceShape& shape, const PatchRequest& request,
-                          const PatchElements<3>& elements) {
-  if (const auto* face = std::get_if<TrimmedSurface>(&shape))
-    return trimmed_space(whole_space(face->surface(), request, elements),
-                         TrimmedSurface(refined(face->surface(), request.refine), face->loops()), elements.elements,
-                         elements.regions);
-  return patch_space<3>(whole_space(std::get<NurbsSurface<3>>(shape), request, elements), elements.elements);
+                          const PatchElements<3>& patch) {
+  return std::visit(SurfaceSpace{request, patch}, shape);
 }
 
 /// Appends a patch whose elements begin at `first_element` of the table.
@@ -235,8 +298,8 @@ FieldSpace<Dim> field_space(const OrientedBoundary<Dim>& oriented, const Discret
     const auto& elements = space.table.elements;
     std::size_t count = 0;
     while (first + count < elements.size() && elements[first + count].patch == static_cast<std::int32_t>(i)) ++count;
-    const PatchElements<Dim> refined{std::span<const BezierElement<Dim>>(elements).subspan(first, count),
-                                     space.table.regions, std::span<const int>(groups).subspan(first, count)};
+    const PatchElements<Dim> refined{static_cast<int>(i), space.table, first,
+                                     std::span<const int>(groups).subspan(first, count), oriented.topology};
     try {
       append<Dim>(space, patch_space(boundary.patches[i].shape, requests[i], refined));
     } catch (Error& error) {

@@ -101,8 +101,16 @@ struct DiscretisationOptions {
 /// Builds the space. On NURBS patches functions are w_a N_a / W (W = sum w_a N_a the geometry's weight function) if
 /// their degree is not below the geometry's in any direction, which puts constants and linear functions of the position
 /// into the space; polynomial B-splines otherwise. Collocation points are the Gauss points of the splines
-/// (gauss_points() in line_space.h), moved off the edges of elements where they would lie on them. Throws InputError
-/// for a degree or refinement out of range or a patch that does not exist.
+/// (gauss_points() in line_space.h), moved off the edges of elements where they would lie on them. On trimmed surfaces
+/// functions of which little is left follow their neighbours (trimmed_space.h).
+///
+/// On extracted surfaces (T-splines) without refinement and with their own degree these are the surface's own functions
+/// w_a N_a / W, divided at creases and between groups (extracted_space.h; the creases are found across the edges of the
+/// topology). They are not refined themselves: with refinement, or another degree, every element is a patch by itself,
+/// functions jump across its edges.
+///
+/// Throws InputError for a degree or refinement out of range or a patch that does not exist, NumericalError for
+/// functions of an extracted surface that depend on one another.
 template <int Dim>
 FieldSpace<Dim> field_space(const geometry::OrientedBoundary<Dim>& boundary, const DiscretisationOptions<Dim>& options);
 

@@ -41,27 +41,38 @@ Vector<Dim> limit_normal(const ElementTable<Dim>& table, const BezierElement<Dim
   return evaluate_jet<Dim>(table, element, place + inside * (middle - place)).normal();
 }
 
-template <int Dim>
-bool is_crease(const Vector<Dim>& a, const Vector<Dim>& b) {
-  return !((a - b).norm() <= crease_angle);
-}
-
 double extent(const Eigen::Ref<const Eigen::MatrixXd>& points) {
   return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
 }
 
-bool has_crease(const ElementTable<2>& table, const BezierElement<2>& before, const BezierElement<2>& after) {
-  return is_crease<2>(limit_normal<2>(table, before, Point<1>(1.0)), limit_normal<2>(table, after, Point<1>(0.0)));
+}  // namespace
+
+template <int Dim>
+bool has_crease(const ElementTable<Dim>& table, const BezierElement<Dim>& a, const Point<Dim - 1>& place_a,
+                const BezierElement<Dim>& b, const Point<Dim - 1>& place_b) {
+  // Said so that a NaN makes a crease.
+  return !((limit_normal<Dim>(table, a, place_a) - limit_normal<Dim>(table, b, place_b)).norm() <= crease_angle);
+}
+
+template bool has_crease(const ElementTable<2>&, const BezierElement<2>&, const Point<1>&, const BezierElement<2>&,
+                         const Point<1>&);
+template bool has_crease(const ElementTable<3>&, const BezierElement<3>&, const Point<2>&, const BezierElement<3>&,
+                         const Point<2>&);
+
+namespace {
+
+bool crease_between(const ElementTable<2>& table, const BezierElement<2>& before, const BezierElement<2>& after) {
+  return has_crease<2>(table, before, Point<1>(1.0), after, Point<1>(0.0));
 }
 
 /// Across the line of constant coordinate d between two elements.
-bool has_crease(const ElementTable<3>& table, const BezierElement<3>& before, const BezierElement<3>& after, int d) {
+bool crease_between(const ElementTable<3>& table, const BezierElement<3>& before, const BezierElement<3>& after, int d) {
   return std::ranges::any_of(samples, [&](double t) {
     Point2 end = Point2::Constant(t);
     Point2 start = end;
     end(d) = 1.0;
     start(d) = 0.0;
-    return is_crease<3>(limit_normal<3>(table, before, end), limit_normal<3>(table, after, start));
+    return has_crease<3>(table, before, end, after, start);
   });
 }
 
@@ -72,11 +83,11 @@ PatchSmoothness<2> smoothness(const NurbsCurve<2>& curve) {
   const auto& elements = table.elements;
   PatchSmoothness<2> result;
   for (std::size_t e = 1; e < elements.size(); ++e)
-    if (has_crease(table, elements[e - 1], elements[e])) result.creases[0].push_back(elements[e].domain[0].first);
+    if (crease_between(table, elements[e - 1], elements[e])) result.creases[0].push_back(elements[e].domain[0].first);
   const Point2 first = evaluate(curve, curve.domain().first);
   const Point2 last = evaluate(curve, curve.domain().last);
   result.closed[0] = (first - last).norm() <= coincidence * extent(curve.control_points()) &&
-                     !has_crease(table, elements.back(), elements.front());
+                     !crease_between(table, elements.back(), elements.front());
   return result;
 }
 
@@ -93,7 +104,7 @@ struct ElementGrid {
   /// Whether the normal jumps anywhere between two strips of elements.
   bool has_crease_between(int d, std::size_t before, std::size_t after) const {
     for (std::size_t along = 0; along < count[static_cast<std::size_t>(1 - d)]; ++along)
-      if (has_crease(table, at(d, before, along), at(d, after, along), d)) return true;
+      if (crease_between(table, at(d, before, along), at(d, after, along), d)) return true;
     return false;
   }
 };

@@ -34,4 +34,10 @@ struct PatchSmoothness {
 PatchSmoothness<2> smoothness(const geometry::NurbsCurve<2>& curve);
 PatchSmoothness<3> smoothness(const geometry::NurbsSurface<3>& surface);
 
+/// Whether the normals of two elements differ at a point that both have.
+template <int Dim>
+bool has_crease(const geometry::ElementTable<Dim>& table, const geometry::BezierElement<Dim>& a,
+                const geometry::Point<Dim - 1>& place_a, const geometry::BezierElement<Dim>& b,
+                const geometry::Point<Dim - 1>& place_b);
+
 }  // namespace isorim::solver
