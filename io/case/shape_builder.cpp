@@ -355,17 +355,18 @@ struct SurfaceBuilder {
   }
   Result operator()(const NurbsPatchKeys& keys) const { return face("nurbs", nurbs_surface(keys), keys); }
   Result operator()(const TSplineKeys& keys) const {
-    if (keys.from.items.empty()) return {{{"tspline", extracted(mesh_tspline(keys))}}};
-    Result result = nurbs_surfaces(keys.from.items);
-    for (Patch<3>& patch : result.patches) patch.shape = extracted(as_tspline(patch, keys));
+    const Result source = keys.from.items.empty() ? Result{} : nurbs_surfaces(keys.from.items);
+    Result result;
+    for (const geometry::TSpline& surface : tsplines(source, keys)) {
+      const std::size_t i = result.patches.size();
+      result.patches.push_back({source.patches.empty() ? "tspline" : source.patches[i].name, geometry::extract(surface),
+                                source.patches.empty() ? 1 : source.patches[i].orientation});
+      meshes.push_back(surface.mesh());
+    }
     return result;
   }
 
  private:
-  geometry::ExtractedSurface extracted(const geometry::TSpline& surface) const {
-    meshes.push_back(surface.mesh());
-    return geometry::extract(surface);
-  }
   static Result face(const char* name, const NurbsSurface<3>& surface, const FaceKeys& keys) {
     return {{{name, trimmed(surface, keys.trims, keys.where.key("trims", keys.where.place))}}};
   }

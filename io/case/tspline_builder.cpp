@@ -1,6 +1,7 @@
 #include "io/case/tspline_builder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -51,6 +52,8 @@ std::function<bool(const Point3&)> condition(const RefineKeys& keys) {
     return [integrand](const Point3& x) {
       double value = 0.0;
       integrand(x, geometry::Points<3>::Zero(3, 1), {&value, 1});
+      if (std::isnan(value))
+        throw GeometryError(fmt::format("the condition is not a number at ({}, {}, {})", x.x(), x.y(), x.z()));
       return value != 0.0;
     };
   } catch (const InputError& error) {
@@ -82,18 +85,15 @@ Region region_of(const RefineKeys& keys) {
   };
 }
 
-TSpline refined(TSpline surface, const TSplineKeys& keys) {
-  for (const RefineKeys& step : keys.refine.items) {
-    const Region region = region_of(step);
-    located(step.where, [&] {
-      for (int level = 0; level < step.levels; ++level) {
-        const std::vector<int> faces = geometry::faces_where(surface, region);
-        surface = geometry::refine(surface, geometry::bisections(surface.mesh(), faces, step.direction));
-      }
-      return 0;
-    });
+/// Divides what lies in the region once; returns how many faces that was.
+std::size_t refine_once(std::vector<TSpline>& surfaces, const Region& region, geometry::Bisection direction) {
+  std::size_t divided = 0;
+  for (TSpline& surface : surfaces) {
+    const std::vector<int> faces = geometry::faces_where(surface, region);
+    divided += faces.size();
+    if (!faces.empty()) surface = geometry::refine(surface, geometry::bisections(surface.mesh(), faces, direction));
   }
-  return surface;
+  return divided;
 }
 
 NurbsSurface<3> with_degrees(NurbsSurface<3> surface, const TSplineKeys& keys) {
@@ -105,25 +105,46 @@ NurbsSurface<3> with_degrees(NurbsSurface<3> surface, const TSplineKeys& keys) {
   return surface;
 }
 
-}  // namespace
-
+/// Of the T-mesh and control points.
 TSpline mesh_tspline(const TSplineKeys& keys) {
   const KnotVector u = knots_of(keys, "knots_u", (*keys.degrees)(0), keys.knots_u);
   const KnotVector v = knots_of(keys, "knots_v", (*keys.degrees)(1), keys.knots_v);
   return located(keys.where, [&] {
     const TMesh mesh = geometry::mesh_of_lines(u, v, partial_lines(keys.lines_u), partial_lines(keys.lines_v));
-    TSpline surface = keys.points.empty() ? TSpline(mesh, homogeneous_points(keys.homogeneous))
-                                          : TSpline::from_points(mesh, points_of<3>(keys.points), keys.weights);
-    return refined(std::move(surface), keys);
+    return keys.points.empty() ? TSpline(mesh, homogeneous_points(keys.homogeneous))
+                               : TSpline::from_points(mesh, points_of<3>(keys.points), keys.weights);
   });
 }
 
+/// Of a NURBS patch.
 TSpline as_tspline(const geometry::Patch<3>& patch, const TSplineKeys& keys) {
   const auto* surface = std::get_if<NurbsSurface<3>>(&patch.shape);
   if (!surface)
     refuse(keys.where.key("from", keys.where.place),
            fmt::format("the patch \"{}\" is trimmed; only whole surfaces become T-splines", patch.name));
-  return refined(TSpline(with_degrees(*surface, keys)), keys);
+  return TSpline(with_degrees(*surface, keys));
+}
+
+void refine_all(std::vector<TSpline>& surfaces, const TSplineKeys& keys) {
+  for (const RefineKeys& step : keys.refine.items) {
+    const Region region = region_of(step);
+    located(step.where, [&] {
+      for (int level = 0; level < step.levels; ++level)
+        if (refine_once(surfaces, region, step.direction) == 0 && level == 0)
+          throw GeometryError("no part of the surface lies in the region");
+      return 0;
+    });
+  }
+}
+
+}  // namespace
+
+std::vector<TSpline> tsplines(const geometry::Boundary<3>& source, const TSplineKeys& keys) {
+  std::vector<TSpline> surfaces;
+  if (keys.from.items.empty()) surfaces.push_back(mesh_tspline(keys));
+  for (const geometry::Patch<3>& patch : source.patches) surfaces.push_back(as_tspline(patch, keys));
+  refine_all(surfaces, keys);
+  return surfaces;
 }
 
 }  // namespace isorim::io

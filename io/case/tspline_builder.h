@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "geometry/boundary.h"
 #include "geometry/tspline/tspline.h"
 #include "io/case/shape_keys.h"
@@ -8,10 +10,8 @@
 /// and key.
 namespace isorim::io {
 
-/// The T-spline that the knots, lines and points describe, refined.
-geometry::TSpline mesh_tspline(const TSplineKeys& keys);
-
-/// A NURBS patch as a T-spline, of the degrees asked for at least, refined. Refuses a trimmed patch.
-geometry::TSpline as_tspline(const geometry::Patch<3>& patch, const TSplineKeys& keys);
+/// The T-splines of the keys, refined: that of the T-mesh, or one for each patch of `source`, what stands in "from", of
+/// the degrees asked for at least. Refuses a trimmed patch and regions that hold no part of any of the surfaces.
+std::vector<geometry::TSpline> tsplines(const geometry::Boundary<3>& source, const TSplineKeys& keys);
 
 }  // namespace isorim::io

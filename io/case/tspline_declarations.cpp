@@ -58,7 +58,9 @@ const Schema<RefineKeys>& schema<RefineKeys>() {
           "Divides the faces of a T-mesh of which a part lies in a region (as 5 x 5 points in each Bézier "
           "element tell), and as few others as it takes to stay analysis-suitable. The surface stays "
           "the same. Without a condition all faces are divided; of several all must hold.")
-          .key("where", &RefineKeys::condition, {.text = "An expression in x, y, z, such as \"z > 0.5\"."})
+          .key("where", &RefineKeys::condition,
+               {.text = "An expression in x, y, z, such as \"z > 0.5\"; places are those before the transform of the "
+                        "shape."})
           .key("box", &RefineKeys::box, {.text = "Two opposite corners of a box along the axes."})
           .key("u", &RefineKeys::u, {.text = "A range of the first parameter."})
           .key("v", &RefineKeys::v, {.text = "A range of the second parameter."})

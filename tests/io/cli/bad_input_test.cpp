@@ -334,6 +334,14 @@ const std::vector<BadCase> tsplines{
     {"RefineByAnUnknownVariable",
      tspline("refine = { where = 'u > 1' }"),
      {"geometry.refine.where: at character 1: found the unknown name \"u\"; expected x, y, z"}},
+    {"RefineOfNothing",
+     "[geometry]\ntype = 'tspline'\nfrom = { type = 'sphere', radius = 1 }\nrefine = [{ levels = 1 }, { where = 'z > "
+     "2' "
+     "}]\n",
+     {"case.toml:4: geometry.refine[2]: no part of the surface lies in the region"}},
+    {"RefineByNoNumber",
+     tspline("refine = { where = 'sqrt(-1 - x) > 0' }"),
+     {"case.toml:7: geometry.refine: the condition is not a number at (0.1, 0.3"}},
     {"RefineByABoxOfOneCorner",
      tspline("refine = { box = [[0, 0, 0]] }"),
      {"geometry.refine: found a box of 1 corners; expected 2"}},
