@@ -223,8 +223,8 @@ CadModel parse_bext(std::string_view text) {
   Json root;
   try {
     root = Json::parse(text.begin(), text.end());
-  } catch (const Json::parse_error& error) {
-    throw InputError(fmt::format("is no JSON: byte {}: {}", error.byte, error.what()));
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("is no JSON that can be read: {}", error.what()));
   }
   return BextReader(root, text.size()).run();
 }

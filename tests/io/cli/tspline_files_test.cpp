@@ -7,6 +7,7 @@
 
 #include "geometry/shapes/solids.h"
 #include "io/iges/reader.h"
+#include "io/results/compute.h"
 #include "io/tspline/iga.h"
 #include "tests/geometry/tspline/extracted_surfaces.h"
 #include "tests/io/cli/program_test.h"
@@ -104,6 +105,28 @@ TEST_F(TSplineFiles, GoThroughIgesAndBack) {
   EXPECT_THAT(back.out, HasSubstr("18 elements, " + std::to_string(torus().function_count()) + " functions"));
   // Turned outward.
   io::tspline::expect_same_bits(io::tspline::read_iga(path("back.iga")).t_splines[0].surface, reversed(torus()));
+}
+
+/// T-splines that have a T-mesh: with domains of their elements, and weights that no file's coordinates give.
+TEST_F(TSplineFiles, CasesWithTMeshesGoThroughFilesBitForBit) {
+  for (const char* name : {"sphere", "cylinder", "cushion"}) {
+    const std::string file =
+        (std::filesystem::path(ISORIM_SOURCE_DIR) / "cases/tspline" / (std::string(name) + ".toml")).string();
+    const auto model = std::get<io::Model<3>>(io::build_model(io::read_case(file)));
+    ASSERT_EQ(run({"convert", file, path("case.igs")}).status, 0);
+    const io::CadModel back = io::read_iges(path("case.igs"));
+    EXPECT_THAT(back.warnings, ::testing::IsEmpty());
+    std::size_t next = 0;
+    for (const auto& patch : model.oriented.boundary.patches) {
+      const auto* surface = std::get_if<ExtractedSurface>(&patch.shape);
+      if (!surface) continue;
+      ASSERT_LT(next, back.t_splines.size());
+      io::tspline::expect_same_bits(back.t_splines[next].surface, *surface);
+      EXPECT_EQ(back.t_splines[next++].origin.name, patch.name);
+    }
+    EXPECT_EQ(next, back.t_splines.size());
+    EXPECT_GT(next, 0u);
+  }
 }
 
 TEST_F(TSplineFiles, NurbsCasesBecomeTSplines) {

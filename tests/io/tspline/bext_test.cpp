@@ -75,6 +75,7 @@ TEST(Bext, SurfacesAreExperimental) {
 
 TEST(Bext, RefusalsNameThePlace) {
   EXPECT_THAT(refusal("{"), HasSubstr("is no JSON"));
+  EXPECT_THAT(refusal(replaced(two_squares, "[2, 1, 0, 1]", "[2, 1e999, 0, 1]")), HasSubstr("1e999"));
   EXPECT_THAT(refusal("[]"), HasSubstr("expected an object"));
   EXPECT_THAT(refusal("{}"), HasSubstr("nodes: is missing"));
   EXPECT_THAT(refusal(replaced(two_squares, "\"num_nodes\": 6", "\"num_nodes\": 7")),
