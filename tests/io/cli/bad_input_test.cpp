@@ -340,7 +340,7 @@ const std::vector<BadCase> tsplines{
      "}]\n",
      {"case.toml:4: geometry.refine[2]: no part of the surface lies in the region"}},
     {"RefineByNoNumber",
-     tspline("refine = { where = 'sqrt(-1 - x) > 0' }"),
+     tspline("refine = { where = 'sqrt(-1 - x)' }"),
      {"case.toml:7: geometry.refine: the condition is not a number at (0.1, 0.3"}},
     {"RefineByABoxOfOneCorner",
      tspline("refine = { box = [[0, 0, 0]] }"),
