@@ -147,19 +147,21 @@ void PendingUpdate::append(const LowRank& term) {
 }
 
 LowRank PendingUpdate::leaf_product(const Product& product) const {
-  const auto& [left, a, right, b] = product;
   const auto from_left = [&](const MatrixXd& u, const MatrixXd& v) {
     LowRank result{u, MatrixXd::Zero(columns_, v.cols())};
-    add_transposed_block_product(*right, b, 1.0, v, result.v);
+    add_transposed_block_product(*product.right, product.b, 1.0, v, result.v);
     return result;
   };
   const auto from_right = [&](const MatrixXd& u, const MatrixXd& v) {
     LowRank result{MatrixXd::Zero(rows_, u.cols()), v};
-    add_block_product(*left, a, 1.0, u, result.u);
+    add_block_product(*product.left, product.a, 1.0, u, result.u);
     return result;
   };
-  const HierarchicalMatrix::Leaf* first = is_leaf(*left, a) ? &left->leaf(a) : nullptr;
-  const HierarchicalMatrix::Leaf* second = is_leaf(*right, b) ? &right->leaf(b) : nullptr;
+  const auto leaf_of = [](const HierarchicalMatrix& matrix, int block) {
+    return is_leaf(matrix, block) ? &matrix.leaf(block) : nullptr;
+  };
+  const HierarchicalMatrix::Leaf* first = leaf_of(*product.left, product.a);
+  const HierarchicalMatrix::Leaf* second = leaf_of(*product.right, product.b);
   if (first != nullptr && !first->is_dense() &&
       (second == nullptr || second->is_dense() || first->low_rank.rank() <= second->low_rank.rank()))
     return from_left(first->low_rank.u, first->low_rank.v);
