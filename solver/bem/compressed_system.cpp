@@ -34,7 +34,7 @@ constexpr int leaf_size = 64;
 /// far targets begin.
 constexpr double separation = 0.75;
 /// Of the factors that precondition.
-constexpr double factor_tolerance = 1e-3;
+constexpr double factor_tolerance = 1e-4;
 
 template <int Dim>
 struct ElementBox {
