@@ -52,9 +52,9 @@ DividedTable<Dim>::DividedTable(const geometry::ElementTable<Dim>& table, double
     first_.push_back(parts_.size());
     const std::span<const double> whole = table.net(element);
     std::vector<Work> work;
-    work.push_back({{static_cast<int>(e), {}, {}}, {whole.begin(), whole.end()}});
-    work.back().part.lower.setZero();
-    work.back().part.upper.setOnes();
+    Part all;
+    all.element = static_cast<int>(e);
+    work.push_back({all, {whole.begin(), whole.end()}});
     while (!work.empty()) {
       Work piece = std::move(work.back());
       work.pop_back();
