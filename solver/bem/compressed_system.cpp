@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
 #include "quadrature/parallel.h"
 #include "solver/bem/kernel_block.h"
 #include "solver/linear/block_tree.h"
+#include "solver/linear/bordered_system.h"
 #include "solver/linear/cluster_tree.h"
 #include "solver/linear/cross_approximation.h"
 #include "solver/linear/gmres.h"
@@ -321,55 +321,6 @@ MatrixXd CollocationSource<Dim>::contract(const KernelBlock<Dim>& kernel, const 
   return result;
 }
 
-/// [matrix columns; rows 0].
-class BorderedOperator final : public LinearOperator {
- public:
-  explicit BorderedOperator(const CompressedSystem& system) : system_(&system) {}
-  Index rows() const override { return system_->right.size(); }
-  Index cols() const override { return rows(); }
-  void add_product(const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> result) const override {
-    const Index size = system_->matrix->rows();
-    const Index extra = rows() - size;
-    system_->matrix->add_product(x.head(size), result.head(size));
-    result.head(size) += system_->columns * x.tail(extra);
-    result.tail(extra) += system_->rows * x.head(size);
-  }
-  std::size_t memory() const override { return system_->matrix->memory(); }
-
- private:
-  const CompressedSystem* system_;
-};
-
-/// The inverse of the bordered matrix with an approximate inverse of its large block.
-class BorderedInverse final : public LinearOperator {
- public:
-  BorderedInverse(const CompressedSystem& system, const LinearOperator& inverse)
-      : system_(&system), inverse_(&inverse), solved_(MatrixXd::Zero(system.columns.rows(), system.columns.cols())) {
-    for (Index k = 0; k < solved_.cols(); ++k) inverse.add_product(system.columns.col(k), solved_.col(k));
-    if (solved_.cols() > 0) complement_.compute(system.rows * solved_);
-  }
-  Index rows() const override { return system_->right.size(); }
-  Index cols() const override { return rows(); }
-  void add_product(const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> result) const override {
-    const Index size = system_->matrix->rows();
-    const Index extra = rows() - size;
-    VectorXd main = inverse_->product(x.head(size));
-    if (extra > 0) {
-      const VectorXd side = complement_.solve(system_->rows * main - x.tail(extra));
-      main -= solved_ * side;
-      result.tail(extra) += side;
-    }
-    result.head(size) += main;
-  }
-  std::size_t memory() const override { return inverse_->memory(); }
-
- private:
-  const CompressedSystem* system_;
-  const LinearOperator* inverse_;
-  MatrixXd solved_;
-  Eigen::PartialPivLU<MatrixXd> complement_;
-};
-
 }  // namespace
 
 template <int Dim>
@@ -392,8 +343,9 @@ CompressedSystem assemble_compressed(const Assembler<Dim>& assembler, const Side
 
 CompressedSolution solve_compressed(const CompressedSystem& system, const SolveOptions& options) {
   const HierarchicalLu factors(*system.matrix, {factor_tolerance, options.threads});
-  const BorderedOperator matrix(system);
-  const BorderedInverse inverse(system, factors);
+  const Border border{system.columns, system.rows, MatrixXd::Zero(system.rows.rows(), system.rows.rows())};
+  const BorderedMatrix matrix(*system.matrix, border);
+  const BorderedInverse inverse(factors, border);
   GmresOptions gmres_options;
   gmres_options.tolerance = options.tolerance;
   gmres_options.max_iterations = options.max_iterations;
