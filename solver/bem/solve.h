@@ -20,7 +20,7 @@ enum class SolveMethod {
 };
 
 struct SolveOptions {
-  /// From here on the compressed matrix is faster (solver/README.md).
+  /// Scalar unknowns; a dense matrix of this size takes 200 MB.
   static constexpr int automatic_limit = 5000;
   SolveMethod method = SolveMethod::automatic;
   /// Relative: of the compression, of the iterations, and what the quadrature aims at.
