@@ -10,8 +10,10 @@
 #include <fmt/ranges.h>
 
 #include "geometry/bezier/element_jet.h"
+#include "geometry/bezier/subdivision.h"
 #include "geometry/errors.h"
 #include "solver/bem/extracted_space.h"
+#include "solver/bem/hierarchical_space.h"
 #include "solver/bem/patch_space.h"
 #include "solver/bem/smoothness.h"
 #include "solver/bem/tensor_space.h"
@@ -131,19 +133,25 @@ struct GroupGrid {
   }
 };
 
-/// The line's splines: jumps at creases and between groups.
-LineSpace field_line(const KnotVector& geometry, int degree, std::span<const double> breakpoints,
-                     std::span<const double> creases, bool closed, const GroupGrid& groups, int d) {
-  std::vector<double> jumps(creases.begin(), creases.end());
-  const std::size_t strips = breakpoints.size() - 1;
-  for (std::size_t i = 1; i < strips; ++i)
-    if (groups.differ(d, i - 1, i)) jumps.push_back(breakpoints[i]);
-  std::ranges::sort(jumps);
-  const bool periodic = closed && !groups.differ(d, strips - 1, 0);
-  return line_space(field_knots(geometry, degree, breakpoints, jumps), periodic);
+/// Where functions may jump: at creases and between groups.
+std::vector<double> jumps(std::span<const double> breakpoints, std::span<const double> creases, const GroupGrid& groups,
+                          int d) {
+  std::vector<double> result(creases.begin(), creases.end());
+  for (std::size_t i = 1; i + 1 < breakpoints.size(); ++i)
+    if (groups.differ(d, i - 1, i)) result.push_back(breakpoints[i]);
+  std::ranges::sort(result);
+  return result;
 }
 
-/// A patch in the table of refined elements.
+/// The line's splines on the breakpoints, bisected `level` times; the groups are those of level 0.
+LineSpace field_line(const KnotVector& geometry, int degree, std::span<const double> breakpoints, int level,
+                     std::span<const double> creases, bool closed, const GroupGrid& groups, int d) {
+  const bool periodic = closed && !groups.differ(d, breakpoints.size() - 2, 0);
+  return line_space(field_knots(geometry, degree, bisected(breakpoints, level), jumps(breakpoints, creases, groups, d)),
+                    periodic);
+}
+
+/// A patch in the table of elements of level 0.
 template <int Dim>
 struct PatchElements {
   int patch = 0;
@@ -152,20 +160,25 @@ struct PatchElements {
   /// One for each element.
   std::span<const int> groups;
   const geometry::Topology<Dim>& topology;
+  const CellTree<Dim>* tree = nullptr;
 
   std::span<const BezierElement<Dim>> elements() const {
     return std::span(table.elements).subspan(first, groups.size());
   }
 };
 
-PatchSpace<2> patch_space(const NurbsCurve<2>& curve, const PatchRequest& request, const PatchElements<2>& refined) {
+/// Its groups, in the order of the cells.
+GroupGrid group_grid(const NurbsCurve<2>&, const PatchRequest&, const PatchElements<2>& refined) {
+  return {{refined.groups.begin(), refined.groups.end()}, {refined.groups.size(), 1}};
+}
+
+TensorSpace<2> whole_space(const NurbsCurve<2>& curve, const PatchRequest& request, const GroupGrid& grid,
+                           int level = 0) {
   const NurbsCurve<2> shape = clamp(curve);
   const PatchSmoothness<2> smooth = smoothness(shape);
   const std::vector<double> breakpoints = bisected(shape.knots().breakpoints(), request.refine);
-  const GroupGrid grid{{refined.groups.begin(), refined.groups.end()}, {refined.groups.size(), 1}};
-  LineSpace line = field_line(shape.knots(), request.degree_over(shape.knots()), breakpoints, smooth.creases[0],
-                              smooth.closed[0], grid, 0);
-  return patch_space<2>(tensor_space(shape, {std::move(line)}), refined.elements());
+  return tensor_space(shape, {field_line(shape.knots(), request.degree_over(shape.knots()), breakpoints, level,
+                                         smooth.creases[0], smooth.closed[0], grid, 0)});
 }
 
 std::array<std::vector<double>, 2> breakpoints_of(const NurbsSurface<3>& surface, const PatchRequest& request) {
@@ -191,14 +204,15 @@ GroupGrid group_grid(const NurbsSurface<3>& surface, const PatchRequest& request
   return grid;
 }
 
-TensorSpace<3> whole_space(const NurbsSurface<3>& surface, const PatchRequest& request, const GroupGrid& grid) {
+TensorSpace<3> whole_space(const NurbsSurface<3>& surface, const PatchRequest& request, const GroupGrid& grid,
+                           int level = 0) {
   const NurbsSurface<3> shape = clamp(surface);
   const PatchSmoothness<3> smooth = smoothness(shape);
   const std::array<std::vector<double>, 2> breakpoints = breakpoints_of(shape, request);
   const auto line = [&](std::size_t d) {
     const KnotVector& knots = shape.knots(d == 0 ? geometry::Direction::u : geometry::Direction::v);
-    return field_line(knots, request.degree_over(knots), breakpoints[d], smooth.creases[d], smooth.closed[d], grid,
-                      static_cast<int>(d));
+    return field_line(knots, request.degree_over(knots), breakpoints[d], level, smooth.creases[d], smooth.closed[d],
+                      grid, static_cast<int>(d));
   };
   return tensor_space(shape, {line(0), line(1)}, smooth);
 }
@@ -226,13 +240,25 @@ bool takes_own_functions(const ExtractedSurface& surface, const PatchRequest& re
          });
 }
 
+/// The space on a curve or whole surface: of tensor products, or locally refined; leaves: its elements.
+template <int Dim>
+PatchSpace<Dim> spline_space(const CarrierShape<Dim>& shape, const PatchRequest& request,
+                             const PatchElements<Dim>& patch, std::span<const BezierElement<Dim>> leaves) {
+  const GroupGrid grid = group_grid(shape, request, patch);
+  if (!patch.tree || patch.tree->levels() == 1) return patch_space<Dim>(whole_space(shape, request, grid), leaves);
+  std::vector<TensorSpace<Dim>> levels;
+  for (int level = 0; level < patch.tree->levels(); ++level) levels.push_back(whole_space(shape, request, grid, level));
+  return hierarchical_space<Dim>(*patch.tree, levels, leaves);
+}
+
 /// A patch's space by the kind of its shape.
 struct SurfaceSpace {
   const PatchRequest& request;
   const PatchElements<3>& patch;
+  std::span<const BezierElement<3>> leaves;
 
   PatchSpace<3> operator()(const NurbsSurface<3>& surface) const {
-    return patch_space<3>(whole_space(surface, request, group_grid(surface, request, patch)), patch.elements());
+    return spline_space<3>(surface, request, patch, leaves);
   }
   PatchSpace<3> operator()(const TrimmedSurface& face) const {
     return trimmed_space(whole_space(face.surface(), request, group_grid(face.surface(), request, patch)),
@@ -258,8 +284,92 @@ struct SurfaceSpace {
 };
 
 PatchSpace<3> patch_space(const geometry::SurfaceShape& shape, const PatchRequest& request,
-                          const PatchElements<3>& patch) {
-  return std::visit(SurfaceSpace{request, patch}, shape);
+                          const PatchElements<3>& patch, std::span<const BezierElement<3>> leaves) {
+  return std::visit(SurfaceSpace{request, patch, leaves}, shape);
+}
+
+PatchSpace<2> patch_space(const NurbsCurve<2>& curve, const PatchRequest& request, const PatchElements<2>& patch,
+                          std::span<const BezierElement<2>> leaves) {
+  return spline_space<2>(curve, request, patch, leaves);
+}
+
+/// Cells of level 0 in each direction; nothing for patches that cannot be refined locally.
+std::optional<std::array<int, 1>> cell_counts(const NurbsCurve<2>& curve, const PatchRequest& request) {
+  return {{static_cast<int>(curve.knots().breakpoints().size() - 1) << request.refine}};
+}
+std::optional<std::array<int, 2>> cell_counts(const geometry::SurfaceShape& shape, const PatchRequest& request) {
+  const auto* surface = std::get_if<NurbsSurface<3>>(&shape);
+  if (!surface) return std::nullopt;
+  return {{static_cast<int>(surface->knots_u().breakpoints().size() - 1) << request.refine,
+           static_cast<int>(surface->knots_v().breakpoints().size() - 1) << request.refine}};
+}
+
+/// The bisected cells of every patch that can have such.
+template <int Dim>
+std::vector<std::optional<CellTree<Dim>>> cell_trees(const Boundary<Dim>& boundary,
+                                                     const std::vector<PatchRequest>& requests,
+                                                     const DiscretisationOptions<Dim>& options) {
+  std::vector<std::vector<GridCell<Dim>>> cells(requests.size());
+  for (const auto& bisected : options.bisected) {
+    const bool is_known = bisected.patch >= 0 && bisected.patch < static_cast<int>(requests.size());
+    if (!is_known || !cell_counts(boundary.patches[static_cast<std::size_t>(bisected.patch)].shape,
+                                  requests[static_cast<std::size_t>(bisected.patch)]))
+      throw InputError(fmt::format("local refinement: patch {} is no curve or whole surface", bisected.patch));
+    if (bisected.cell.level + 1 >= DiscretisationOptions<Dim>::max_local_levels)
+      throw InputError(fmt::format("local refinement: a cell of level {} is bisected; expected levels below {}",
+                                   bisected.cell.level, DiscretisationOptions<Dim>::max_local_levels - 1));
+    cells[static_cast<std::size_t>(bisected.patch)].push_back(bisected.cell);
+  }
+  std::vector<std::optional<CellTree<Dim>>> trees;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    const auto counts = cell_counts(boundary.patches[i].shape, requests[i]);
+    if (counts)
+      trees.emplace_back(CellTree<Dim>(*counts, std::move(cells[i])));
+    else
+      trees.emplace_back(std::nullopt);
+  }
+  return trees;
+}
+
+/// Appends the part of an element of level 0 that is the cell.
+template <int Dim>
+void append_part(ElementTable<Dim>& table, const ElementTable<Dim>& from, BezierElement<Dim> element,
+                 const GridCell<Dim>& cell) {
+  const std::span<const double> whole = from.net(element);
+  element.offset = table.nets.size();
+  table.nets.insert(table.nets.end(), whole.begin(), whole.end());
+  std::array<int, Dim - 1> degrees;
+  for (std::size_t d = 0; d + 1 < Dim; ++d) degrees[d] = element.degree[d];
+  for (std::size_t d = 0; d + 1 < Dim && cell.level > 0; ++d) {
+    const int count = 1 << cell.level;
+    const int index = cell.index[d] % count;
+    const geometry::Interval part{static_cast<double>(index) / count, static_cast<double>(index + 1) / count};
+    geometry::restrict_net(std::span(table.nets).subspan(element.offset), Dim + 1, degrees, static_cast<int>(d), part);
+    const geometry::Interval domain = element.domain[d];
+    element.domain[d] = {domain.first + part.first * domain.length(), domain.first + part.last * domain.length()};
+  }
+  table.elements.push_back(element);
+}
+
+/// The leaves of a patch, at the end of the space's table; coarse: the patch's elements of level 0.
+template <int Dim>
+void append_leaves(FieldSpace<Dim>& space, const ElementTable<Dim>& from, std::span<const BezierElement<Dim>> coarse,
+                   const CellTree<Dim>* tree) {
+  const GridCell<Dim> none{-1, {}};
+  if (!tree) {
+    for (const BezierElement<Dim>& element : coarse) {
+      append_part<Dim>(space.table, from, element, none);
+      space.cells.push_back(none);
+    }
+    return;
+  }
+  for (const GridCell<Dim>& leaf : tree->leaves()) {
+    std::size_t index = static_cast<std::size_t>(leaf.index[0] >> leaf.level);
+    if constexpr (Dim == 3)
+      index += static_cast<std::size_t>(leaf.index[1] >> leaf.level) * static_cast<std::size_t>(tree->counts()[0]);
+    append_part<Dim>(space.table, from, coarse[index], leaf);
+    space.cells.push_back(leaf);
+  }
 }
 
 /// Appends a patch whose elements begin at `first_element` of the table.
@@ -290,18 +400,27 @@ FieldSpace<Dim> field_space(const OrientedBoundary<Dim>& oriented, const Discret
   Boundary<Dim> fine = boundary;
   for (std::size_t i = 0; i < requests.size(); ++i)
     fine.patches[i].shape = refined(boundary.patches[i].shape, requests[i].refine);
+  const std::vector<std::optional<CellTree<Dim>>> trees = cell_trees(boundary, requests, options);
+  const ElementTable<Dim> table = bezier_elements(fine);
+  const std::vector<int> groups = element_groups(table, options);
   FieldSpace<Dim> space;
-  space.table = bezier_elements(fine);
-  const std::vector<int> groups = element_groups(space.table, options);
+  space.table.regions = table.regions;
   std::size_t first = 0;
   for (std::size_t i = 0; i < requests.size(); ++i) {
-    const auto& elements = space.table.elements;
     std::size_t count = 0;
-    while (first + count < elements.size() && elements[first + count].patch == static_cast<std::int32_t>(i)) ++count;
-    const PatchElements<Dim> refined{static_cast<int>(i), space.table, first,
-                                     std::span<const int>(groups).subspan(first, count), oriented.topology};
+    while (first + count < table.elements.size() && table.elements[first + count].patch == static_cast<std::int32_t>(i))
+      ++count;
+    const PatchElements<Dim> patch{static_cast<int>(i),
+                                   table,
+                                   first,
+                                   std::span<const int>(groups).subspan(first, count),
+                                   oriented.topology,
+                                   trees[i] ? &*trees[i] : nullptr};
+    const std::size_t begin = space.table.elements.size();
+    append_leaves<Dim>(space, table, patch.elements(), patch.tree);
+    const std::span<const BezierElement<Dim>> leaves = std::span(std::as_const(space.table.elements)).subspan(begin);
     try {
-      append<Dim>(space, patch_space(boundary.patches[i].shape, requests[i], refined));
+      append<Dim>(space, patch_space(boundary.patches[i].shape, requests[i], patch, leaves));
     } catch (Error& error) {
       error.add_context(fmt::format("patch \"{}\"", boundary.patches[i].name));
       throw;
@@ -311,6 +430,55 @@ FieldSpace<Dim> field_space(const OrientedBoundary<Dim>& oriented, const Discret
   return space;
 }
 
+namespace {
+
+/// Bisects the patch as a whole.
+template <int Dim>
+void refine_patch(DiscretisationOptions<Dim>& options, const std::string& name, int refine) {
+  auto special = std::ranges::find(options.patches, name, [](const auto& entry) { return entry.first; });
+  if (special == options.patches.end()) special = options.patches.insert(special, {name, {}});
+  special->second.refine = refine;
+}
+
+int largest_degree(const NurbsCurve<2>& curve, const PatchRequest& request) {
+  return request.degree_over(curve.knots());
+}
+int largest_degree(const geometry::SurfaceShape& shape, const PatchRequest& request) {
+  const NurbsSurface<3>& surface = std::get<NurbsSurface<3>>(shape);
+  return std::max(request.degree_over(surface.knots_u()), request.degree_over(surface.knots_v()));
+}
+
+}  // namespace
+
+template <int Dim>
+DiscretisationOptions<Dim> refine_locally(const OrientedBoundary<Dim>& oriented,
+                                          const DiscretisationOptions<Dim>& options, const FieldSpace<Dim>& space,
+                                          std::span<const int> marked) {
+  const Boundary<Dim>& boundary = oriented.boundary;
+  const std::vector<PatchRequest> requests = patch_requests(boundary, options);
+  const std::vector<std::optional<CellTree<Dim>>> trees = cell_trees(boundary, requests, options);
+  std::vector<std::vector<GridCell<Dim>>> cells(requests.size());
+  for (const int e : marked)
+    cells[static_cast<std::size_t>(space.table.elements[static_cast<std::size_t>(e)].patch)].push_back(
+        space.cells[static_cast<std::size_t>(e)]);
+  DiscretisationOptions<Dim> result = options;
+  result.bisected.clear();
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    if (!trees[i]) {
+      if (!cells[i].empty()) refine_patch(result, boundary.patches[i].name, requests[i].refine + 1);
+      continue;
+    }
+    const int radius = (largest_degree(boundary.patches[i].shape, requests[i]) + 1) / 2;
+    for (const GridCell<Dim>& cell : graded<Dim>(*trees[i], cells[i], radius))
+      result.bisected.push_back({static_cast<int>(i), cell});
+  }
+  return result;
+}
+
+template DiscretisationOptions<2> refine_locally(const OrientedBoundary<2>&, const DiscretisationOptions<2>&,
+                                                 const FieldSpace<2>&, std::span<const int>);
+template DiscretisationOptions<3> refine_locally(const OrientedBoundary<3>&, const DiscretisationOptions<3>&,
+                                                 const FieldSpace<3>&, std::span<const int>);
 template FieldSpace<2> field_space(const OrientedBoundary<2>&, const DiscretisationOptions<2>&);
 template FieldSpace<3> field_space(const OrientedBoundary<3>&, const DiscretisationOptions<3>&);
 

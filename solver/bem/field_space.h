@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -50,6 +51,16 @@ struct CollocationPoint {
   geometry::Vector<Dim> normal;
 };
 
+/// A cell in the parameters of a patch. Level 0 are the cells of its uniform refinement, counted in each direction;
+/// every level halves the cells of the level before.
+template <int Dim>
+struct GridCell {
+  int level = 0;
+  std::array<int, Dim - 1> index{};
+
+  friend auto operator<=>(const GridCell&, const GridCell&) = default;
+};
+
 /// A space of functions on a boundary and the points that go with them. Unknowns and known data of all equations live
 /// here, one coefficient a function and component.
 ///
@@ -69,6 +80,8 @@ struct FieldSpace {
   /// One for each function, in the same order: point i lies where function i is large, and the matrix of the functions'
   /// values at the points is well conditioned.
   std::vector<CollocationPoint<Dim>> points;
+  /// Of each element, where its patch can be refined locally; level -1 elsewhere.
+  std::vector<GridCell<Dim>> cells;
 
   int function_count() const { return static_cast<int>(points.size()); }
   std::span<const std::int32_t> functions_of(int element) const {
@@ -92,6 +105,14 @@ struct DiscretisationOptions {
   };
   /// By name of the patch: instead of the above.
   std::vector<std::pair<std::string, PatchOptions>> patches;
+  /// Local refinement: a cell of a patch (by its index) that is bisected in every direction, of level 0 or a child of
+  /// another one, levels below max_local_levels. Made by refine_locally().
+  struct BisectedCell {
+    int patch = 0;
+    GridCell<Dim> cell;
+  };
+  std::vector<BisectedCell> bisected;
+  static constexpr int max_local_levels = 8;
   /// Which elements may share functions: where the numbers of neighbouring elements of a patch differ (other boundary
   /// conditions), functions end along the knot line between them. Called with the patch, and a point and the outward
   /// normal in the middle of an element; empty: all the same.
@@ -113,6 +134,15 @@ struct DiscretisationOptions {
 /// functions of an extracted surface that depend on one another.
 template <int Dim>
 FieldSpace<Dim> field_space(const geometry::OrientedBoundary<Dim>& boundary, const DiscretisationOptions<Dim>& options);
+
+/// What to build the space from so that the marked elements are bisected. On curves and whole surfaces only they are
+/// (and neighbours, so that levels change by one within the reach of a function): truncated hierarchical B-splines
+/// (hierarchical_space.h), which hold all functions of the space before they were bisected. The groups remain those of
+/// level 0. Trimmed and extracted surfaces with a marked element are bisected as a whole.
+template <int Dim>
+DiscretisationOptions<Dim> refine_locally(const geometry::OrientedBoundary<Dim>& boundary,
+                                          const DiscretisationOptions<Dim>& options, const FieldSpace<Dim>& space,
+                                          std::span<const int> marked);
 
 /// Values of the element's functions at a place of its unit cell: elements[element].count numbers.
 template <int Dim>

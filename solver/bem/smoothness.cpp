@@ -66,7 +66,8 @@ bool crease_between(const ElementTable<2>& table, const BezierElement<2>& before
 }
 
 /// Across the line of constant coordinate d between two elements.
-bool crease_between(const ElementTable<3>& table, const BezierElement<3>& before, const BezierElement<3>& after, int d) {
+bool crease_between(const ElementTable<3>& table, const BezierElement<3>& before, const BezierElement<3>& after,
+                    int d) {
   return std::ranges::any_of(samples, [&](double t) {
     Point2 end = Point2::Constant(t);
     Point2 start = end;

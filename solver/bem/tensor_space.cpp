@@ -143,60 +143,67 @@ struct LocalRows {
   Eigen::MatrixXd rows;
 };
 
-void fill_local_rows(const TensorSpace<2>& space, std::size_t element, LocalRows& local) {
-  const ExtractionOperator& u = space.lines[0].elements[element];
-  local.rows = u.matrix.transpose();
-  local.splines.resize(static_cast<std::size_t>(local.rows.cols()));
-  std::iota(local.splines.begin(), local.splines.end(), u.first_function);
+std::vector<std::int32_t> splines_on(const TensorSpace<2>& space, std::size_t cell) {
+  const ExtractionOperator& u = space.lines[0].elements[cell];
+  std::vector<std::int32_t> splines(static_cast<std::size_t>(u.matrix.rows()));
+  std::iota(splines.begin(), splines.end(), u.first_function);
+  return splines;
 }
 
-void fill_local_rows(const TensorSpace<3>& space, std::size_t element, LocalRows& local) {
+std::vector<std::int32_t> splines_on(const TensorSpace<3>& space, std::size_t cell) {
   const std::size_t columns = space.lines[0].elements.size();
-  const ExtractionOperator& u = space.lines[0].elements[element % columns];
-  const ExtractionOperator& v = space.lines[1].elements[element / columns];
-  const Eigen::Index p = u.matrix.rows();
-  const Eigen::Index q = v.matrix.rows();
-  local.rows.resize(p * q, p * q);
-  local.splines.clear();
+  const ExtractionOperator& u = space.lines[0].elements[cell % columns];
+  const ExtractionOperator& v = space.lines[1].elements[cell / columns];
+  const std::int32_t stride = space.lines[0].knots.basis_count();
+  std::vector<std::int32_t> splines;
+  for (int j = 0; j < v.matrix.rows(); ++j)
+    for (int i = 0; i < u.matrix.rows(); ++i) splines.push_back(u.first_function + i + (v.first_function + j) * stride);
+  return splines;
+}
+
+Eigen::MatrixXd local_rows(const TensorSpace<2>& space, std::size_t cell) {
+  return space.lines[0].elements[cell].matrix.transpose();
+}
+
+Eigen::MatrixXd local_rows(const TensorSpace<3>& space, std::size_t cell) {
+  const std::size_t columns = space.lines[0].elements.size();
+  const Eigen::MatrixXd& u = space.lines[0].elements[cell % columns].matrix;
+  const Eigen::MatrixXd& v = space.lines[1].elements[cell / columns].matrix;
+  const Eigen::Index p = u.rows();
+  const Eigen::Index q = v.rows();
+  Eigen::MatrixXd rows(p * q, p * q);
   for (Eigen::Index j = 0; j < q; ++j)
-    for (Eigen::Index i = 0; i < p; ++i) {
-      local.splines.push_back(static_cast<std::int32_t>(
-          u.first_function + i +
-          (v.first_function + j) * static_cast<Eigen::Index>(space.lines[0].knots.basis_count())));
-      local.rows.col(i + p * j).reshaped(p, q).noalias() = u.matrix.row(i).transpose().lazyProduct(v.matrix.row(j));
-    }
+    for (Eigen::Index i = 0; i < p; ++i)
+      rows.col(i + p * j).reshaped(p, q).noalias() = u.row(i).transpose().lazyProduct(v.row(j));
+  return rows;
 }
 
 template <int Dim>
-void apply_weights(const TensorSpace<Dim>& space, const BezierElement<Dim>& element, LocalRows& local) {
+void apply_weights(const TensorSpace<Dim>& space, bool polynomial, LocalRows& local) {
   if (space.weights.size() == 0) return;
   for (Eigen::Index k = 0; k < local.rows.cols(); ++k)
     local.rows.col(k) *= space.weights(local.splines[static_cast<std::size_t>(k)]);
   // The table has divided out the weight there.
-  if (element.polynomial) local.rows /= local.rows.row(0).sum();
+  if (polynomial) local.rows /= local.rows.row(0).sum();
 }
 
-/// Appends the element's functions, B-splines of one function added up.
+/// B-splines of one function added up.
 template <int Dim>
-void append(PatchSpace<Dim>& result, const TensorSpace<Dim>& space, const LocalRows& local) {
-  FieldElement<Dim>& field = result.elements.back();
-  field.first = result.functions.size();
-  field.row = result.rows.size();
-  const Eigen::Index length = local.rows.rows();
+CellFunctions merged(const TensorSpace<Dim>& space, LocalRows& local) {
+  CellFunctions cell;
   for (Eigen::Index k = 0; k < local.rows.cols(); ++k) {
     const std::int32_t function = space.number[static_cast<std::size_t>(local.splines[static_cast<std::size_t>(k)])];
-    const auto begin = result.functions.begin() + static_cast<std::ptrdiff_t>(field.first);
-    const auto known = std::find(begin, result.functions.end(), function);
-    const double* row = local.rows.col(k).data();
-    if (known == result.functions.end()) {
-      result.functions.push_back(function);
-      result.rows.insert(result.rows.end(), row, row + length);
+    const auto known = std::ranges::find(cell.functions, function);
+    const Eigen::Index column = known - cell.functions.begin();
+    if (known == cell.functions.end()) {
+      cell.functions.push_back(function);
+      local.rows.col(column) = local.rows.col(k).eval();
     } else {
-      double* sum = result.rows.data() + field.row + static_cast<std::size_t>((known - begin) * length);
-      for (Eigen::Index j = 0; j < length; ++j) sum[j] += row[j];
+      local.rows.col(column) += local.rows.col(k);
     }
   }
-  field.count = static_cast<int>(result.functions.size() - field.first);
+  cell.rows = local.rows.leftCols(static_cast<Eigen::Index>(cell.functions.size()));
+  return cell;
 }
 
 template <int Dim>
@@ -219,26 +226,53 @@ typename PatchSpace<Dim>::Place place_of(const TensorSpace<Dim>& space, std::int
 }  // namespace
 
 template <int Dim>
+std::vector<std::int32_t> functions_on(const TensorSpace<Dim>& space, std::size_t cell) {
+  std::vector<std::int32_t> functions = splines_on(space, cell);
+  for (std::int32_t& function : functions) function = space.number[static_cast<std::size_t>(function)];
+  return functions;
+}
+
+template <int Dim>
+CellFunctions cell_functions(const TensorSpace<Dim>& space, std::size_t cell, bool polynomial) {
+  LocalRows local{splines_on(space, cell), local_rows(space, cell)};
+  apply_weights(space, polynomial, local);
+  return merged(space, local);
+}
+
+template <int Dim>
+typename PatchSpace<Dim>::Place collocation_place(const TensorSpace<Dim>& space, std::int32_t function) {
+  return place_of<Dim>(space, space.representative[static_cast<std::size_t>(function)]);
+}
+
+template <int Dim>
 PatchSpace<Dim> patch_space(const TensorSpace<Dim>& space, std::span<const BezierElement<Dim>> elements) {
   PatchSpace<Dim> result;
   result.elements.reserve(elements.size());
-  LocalRows local;
   for (std::size_t e = 0; e < elements.size(); ++e) {
+    const CellFunctions cell = cell_functions<Dim>(space, e, elements[e].polynomial);
+    if (e == 0) {
+      result.functions.reserve(elements.size() * cell.functions.size());
+      result.rows.reserve(elements.size() * static_cast<std::size_t>(cell.rows.size()));
+    }
     FieldElement<Dim>& field = result.elements.emplace_back();
     for (std::size_t d = 0; d + 1 < Dim; ++d) field.degree[d] = static_cast<std::int8_t>(space.lines[d].knots.degree());
     field.rational = space.weights.size() > 0 && !elements[e].polynomial;
-    fill_local_rows(space, e, local);
-    apply_weights(space, elements[e], local);
-    if (e == 0) {
-      result.functions.reserve(elements.size() * local.splines.size());
-      result.rows.reserve(elements.size() * static_cast<std::size_t>(local.rows.size()));
-    }
-    append(result, space, local);
+    field.first = result.functions.size();
+    field.count = static_cast<int>(cell.functions.size());
+    field.row = result.rows.size();
+    result.functions.insert(result.functions.end(), cell.functions.begin(), cell.functions.end());
+    result.rows.insert(result.rows.end(), cell.rows.data(), cell.rows.data() + cell.rows.size());
   }
   for (const std::int32_t spline : space.representative) result.points.push_back(place_of<Dim>(space, spline));
   return result;
 }
 
+template std::vector<std::int32_t> functions_on(const TensorSpace<2>&, std::size_t);
+template std::vector<std::int32_t> functions_on(const TensorSpace<3>&, std::size_t);
+template CellFunctions cell_functions(const TensorSpace<2>&, std::size_t, bool);
+template CellFunctions cell_functions(const TensorSpace<3>&, std::size_t, bool);
+template PatchSpace<2>::Place collocation_place<2>(const TensorSpace<2>&, std::int32_t);
+template PatchSpace<3>::Place collocation_place<3>(const TensorSpace<3>&, std::int32_t);
 template PatchSpace<2> patch_space(const TensorSpace<2>&, std::span<const BezierElement<2>>);
 template PatchSpace<3> patch_space(const TensorSpace<3>&, std::span<const BezierElement<3>>);
 

@@ -42,6 +42,21 @@ TensorSpace<2> tensor_space(const geometry::NurbsCurve<2>& shape, std::array<Lin
 TensorSpace<3> tensor_space(const geometry::NurbsSurface<3>& shape, std::array<LineSpace, 2> lines,
                             const PatchSmoothness<3>& smooth);
 
+/// The functions of one cell of the knots' grid (the first parameter fastest).
+struct CellFunctions {
+  std::vector<std::int32_t> functions;
+  /// Bernstein coefficients, one column a function; polynomial: as in an element of equal weights, divided out.
+  Eigen::MatrixXd rows;
+};
+template <int Dim>
+std::vector<std::int32_t> functions_on(const TensorSpace<Dim>& space, std::size_t cell);
+template <int Dim>
+CellFunctions cell_functions(const TensorSpace<Dim>& space, std::size_t cell, bool polynomial);
+
+/// Where the collocation point of a function is.
+template <int Dim>
+typename PatchSpace<Dim>::Place collocation_place(const TensorSpace<Dim>& space, std::int32_t function);
+
 /// Rows and points; elements: those of the refined patch, for which the functions are N_a / w with the elements' own
 /// weight functions.
 template <int Dim>
