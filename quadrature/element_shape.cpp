@@ -22,13 +22,6 @@ geometry::Vector<Dim> jacobian(const ElementJet<Dim>& jet) {
   }
 }
 
-/// Chebyshev points of a direction at which the Jacobian is sampled. Its length is not a polynomial, whatever the
-/// element.
-template <int Dim>
-int sample_count(const ElementNet<Dim>& net, std::size_t direction) {
-  return std::clamp(8 * net.degree[direction] + 6, 14, 46);
-}
-
 double chebyshev_place(int k, int count) {
   return 0.5 - 0.5 * std::cos(std::numbers::pi * (k + 0.5) / count);
 }
@@ -46,12 +39,20 @@ void add_coefficients(const std::vector<Value>& values, std::vector<double>& siz
   }
 }
 
-/// Of the Jacobian and its length, along a few parameter lines of the direction.
+/// Sizes of Chebyshev coefficients, relative to the largest value.
+struct Spectrum {
+  std::vector<double> sizes;
+
+  /// The last few fall below the tolerance.
+  bool is_resolved(double tolerance) const { return *std::max_element(sizes.end() - 3, sizes.end()) <= tolerance; }
+};
+
+/// Of the Jacobian and its length (which is no polynomial, whatever the element), from `count` points on each of a few
+/// parameter lines.
 template <int Dim>
-Growth jacobian_growth(const ElementNet<Dim>& net, std::size_t direction, double field_degree, double tolerance) {
-  const int count = sample_count(net, direction);
-  std::vector<double> sizes(static_cast<std::size_t>(count), 0.0);
+Spectrum jacobian_spectrum(const ElementNet<Dim>& net, std::size_t direction, int count) {
   using Value = Eigen::Matrix<double, Dim + 1, 1>;
+  Spectrum spectrum{std::vector<double>(static_cast<std::size_t>(count), 0.0)};
   std::vector<Value> values(static_cast<std::size_t>(count));
   const std::vector<double> lines = Dim == 2 ? std::vector{0.0} : std::vector{0.05, 0.5, 0.95};
   double largest = std::numeric_limits<double>::min();
@@ -63,11 +64,25 @@ Growth jacobian_growth(const ElementNet<Dim>& net, std::size_t direction, double
       values[static_cast<std::size_t>(k)] << normal, normal.norm();
       largest = std::max(largest, normal.norm());
     }
-    add_coefficients(values, sizes);
+    add_coefficients(values, spectrum.sizes);
   }
-  // What is smaller than the tolerance need not be resolved.
-  for (double& size : sizes) size = size > 0.1 * tolerance * largest ? size / largest : 0.0;
-  return {sizes, field_degree};
+  for (double& size : spectrum.sizes) size /= largest;
+  return spectrum;
+}
+
+/// With as many points as it takes.
+template <int Dim>
+Growth jacobian_growth(const ElementNet<Dim>& net, std::size_t direction, double field_degree, double tolerance) {
+  constexpr int most_points = 150;
+  const double negligible = 0.03 * tolerance;
+  int count = 4 * net.degree[direction] + 8;
+  Spectrum spectrum = jacobian_spectrum(net, direction, count);
+  while (!spectrum.is_resolved(negligible) && count < most_points) {
+    count *= 2;
+    spectrum = jacobian_spectrum(net, direction, count);
+  }
+  for (double& size : spectrum.sizes) size = size > negligible ? size : 0.0;
+  return {spectrum.sizes, field_degree};
 }
 
 template <int Dim>
@@ -152,6 +167,29 @@ bool descend(const ElementShape<Dim>& shape, const Cell<Dim - 1>& cell, const ge
   return false;
 }
 
+/// Newton's method for the quartic; the guess where it leads elsewhere.
+template <int Dim>
+std::complex<double> refined(const geometry::Vector<Dim>& offset, const geometry::Vector<Dim>& tangent,
+                             const geometry::Vector<Dim>& curvature, std::complex<double> guess) {
+  constexpr int most_steps = 5;
+  std::complex<double> t = guess;
+  for (int step = 0; step < most_steps; ++step) {
+    std::complex<double> value = 0.0;
+    std::complex<double> slope = 0.0;
+    for (int c = 0; c < Dim; ++c) {
+      const std::complex<double> d = offset[c] + t * (tangent[c] + 0.5 * t * curvature[c]);
+      value += d * d;
+      slope += 2.0 * d * (tangent[c] + t * curvature[c]);
+    }
+    if (std::norm(slope) == 0.0) return guess;
+    const std::complex<double> change = value / slope;
+    t -= change;
+    if (std::norm(change) < 1e-6 * std::norm(t)) break;
+  }
+  t.imag(std::abs(t.imag()));
+  return std::norm(t - guess) < 0.5 * std::norm(guess) ? t : guess;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -199,7 +237,10 @@ std::complex<double> singularity_on_line(const geometry::Vector<Dim>& offset, co
   const double b = offset.dot(tangent);
   const double c = offset.squaredNorm();
   if (!(a > 1e-30 * c)) return {0.0, 1e15};
-  return std::complex<double>(-b, std::sqrt(std::max(a * c - b * b, 0.0))) / a;
+  const std::complex<double> guess = std::complex<double>(-b, std::sqrt(std::max(a * c - b * b, 0.0))) / a;
+  return offset.dot(curvature) == 0.0 && tangent.dot(curvature) == 0.0
+             ? guess
+             : refined<Dim>(offset, tangent, curvature, guess);
 }
 
 template ElementShape<2> element_shape(const ElementNet<2>&, double, double);

@@ -63,8 +63,8 @@ template <int Dim>
 NearestPlace<Dim> nearest_place(const ElementShape<Dim>& shape, const Cell<Dim - 1>& cell,
                                 const geometry::Point<Dim>& target);
 
-/// The complex t with |offset + t tangent + t^2 / 2 curvature|^2 = 0 nearest to 0, with non-negative imaginary part, of
-/// the cubic and quartic terms left out: where a kernel becomes singular on a line that passes the target at `offset`.
+/// A complex t near 0 with |offset + t tangent + t^2 / 2 curvature|^2 = 0 and non-negative imaginary part: where a
+/// kernel becomes singular on a line that passes the target at `offset`.
 template <int Dim>
 std::complex<double> singularity_on_line(const geometry::Vector<Dim>& offset, const geometry::Vector<Dim>& tangent,
                                          const geometry::Vector<Dim>& curvature);

@@ -119,11 +119,12 @@ Distortion distortion(const NearRequest<3>& request, const Cell<2>& cell, const 
   std::array<std::array<std::array<double, count>, count>, 2> speed;
   std::array<double, 2> largest{};
   for (std::size_t k = 0; k < count * count; ++k) {
-    const geometry::Point2 fraction(0.5 * static_cast<double>(k % count), 0.5 * static_cast<double>(k / count));
+    const std::size_t across = k / count;
+    const geometry::Point2 fraction(0.5 * static_cast<double>(k % count), 0.5 * static_cast<double>(across));
     const geometry::Point2 at = cell.lower + fraction.cwiseProduct(cell.upper - cell.lower);
     const ElementJet<3> there = element_jet(request.shape->net, at, request.target);
     for (std::size_t d = 0; d < 2; ++d) {
-      speed[d][k % count][k / count] = there.first[d].norm();
+      speed[d][k % count][across] = there.first[d].norm();
       largest[d] = std::max(largest[d], there.first[d].norm());
     }
   }

@@ -18,7 +18,7 @@ std::array<int, Dim - 1> plain_orders(const NearRequest<Dim>& request, const Nea
 /// get rules for logarithms. On cut elements always polar, about the nearest
 /// place of the whole cell. Cells over which the
 /// metric changes much, as near a degenerate edge, are bisected first. Numbers of points come from the Bernstein
-/// ellipses of the singularities in the complex planes of the parameters (A. af Klinteberg, C. Sorgentone, A.-K.
+/// ellipses of the singularities in the complex planes of the parameters (L. af Klinteberg, C. Sorgentone, A.-K.
 /// Tornberg, Quadrature error estimates for layer potentials evaluated near curved surfaces in three dimensions,
 /// Comput. Math. Appl. 111 (2022) 1-19).
 template <int Dim>

@@ -22,10 +22,19 @@ struct CurveJet {
   Eigen::Matrix<Number, 2, 1> second;
 };
 
+bool is_straight(const CellCurve& curve) {
+  return curve.cols() == 2 && curve(2, 0) == 1.0 && curve(2, 1) == 1.0;
+}
+
 /// De Casteljau's algorithm, whose last rows hold the derivatives.
 template <class Number>
 CurveJet<Number> curve_jet(const CellCurve& curve, Number s) {
   using Column = Eigen::Matrix<Number, 3, 1>;
+  if (is_straight(curve)) {
+    const Eigen::Matrix<Number, 2, 1> side = (curve.col(1) - curve.col(0)).template head<2>().template cast<Number>();
+    return {curve.col(0).template head<2>().template cast<Number>() + s * side, side,
+            Eigen::Matrix<Number, 2, 1>::Zero()};
+  }
   constexpr std::size_t room = 32;
   const auto degree = static_cast<std::size_t>(curve.cols() - 1);
   std::array<Column, room> row;
@@ -44,10 +53,6 @@ CurveJet<Number> curve_jet(const CellCurve& curve, Number s) {
   jet.first = (first.template head<2>() - first[2] * jet.point) / w;
   jet.second = (second.template head<2>() - 2.0 * first[2] * jet.first - second[2] * jet.point) / w;
   return jet;
-}
-
-bool is_straight(const CellCurve& curve) {
-  return curve.cols() == 2 && curve(2, 0) == curve(2, 1);
 }
 
 /// Where a weight function with this ratio of weights can vanish at the nearest: as that of a quadratic does (see

@@ -7,7 +7,7 @@
 namespace isorim::quadrature {
 
 double log_ellipse(std::complex<double> z) {
-  const double sum = std::abs(z) + std::abs(z - 1.0);
+  const double sum = std::sqrt(std::norm(z)) + std::sqrt(std::norm(z - 1.0));
   return std::acosh(std::max(sum, 1.0));
 }
 
@@ -28,8 +28,10 @@ SinhMap SinhMap::towards(std::complex<double> singularity) {
 
 SinhMap::Value SinhMap::at(double g) const {
   if (is_identity()) return {g, 1.0};
-  const double t = first_ + g * length_;
-  return {std::clamp(centre_ + scale_ * std::sinh(t), 0.0, 1.0), scale_ * std::cosh(t) * length_};
+  // Of sinh t only the absolute error counts.
+  const double half = 0.5 * std::exp(first_ + g * length_);
+  const double inverse = 0.25 / half;
+  return {std::clamp(centre_ + scale_ * (half - inverse), 0.0, 1.0), scale_ * (half + inverse) * length_};
 }
 
 std::complex<double> SinhMap::at(std::complex<double> g) const {

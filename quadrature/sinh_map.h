@@ -64,31 +64,30 @@ class Growth {
   std::array<float, 17> values_{};
 };
 
+/// The point of the ellipse about [0, 1] at an angle's cosine and sine.
+inline std::complex<double> ellipse_point(double log_rho, double cosine, double sine) {
+  return {0.5 + 0.5 * std::cosh(log_rho) * cosine, 0.5 * std::sinh(log_rho) * sine};
+}
+
 /// The number of points of a Gauss-Legendre rule in g for an integrand with the given log_ellipse_of its nearest
 /// singularity, times factors that grow like exp(growth(u)), u = map.at(g), to the tolerance (relative to the size of
 /// the integrand on the interval). Any singularity weaker than the inverse cube of the distance.
 template <class GrowthAt>
-int gauss_points(const SinhMap& map, double log_rho, double tolerance, const GrowthAt& growth);
-
-// --- Implementation -------------------------------------------------------------------------------------------------
-
-/// The point of the ellipse about [0, 1] at an angle.
-inline std::complex<double> ellipse_point(double log_rho, double angle) {
-  return 0.5 + 0.5 * std::complex<double>(std::cosh(log_rho) * std::cos(angle), std::sinh(log_rho) * std::sin(angle));
-}
-
-template <class GrowthAt>
 int gauss_points(const SinhMap& map, double log_rho, double tolerance, const GrowthAt& growth) {
-  constexpr std::array<double, 6> shares{1.0, 0.75, 0.55, 0.4, 0.28, 0.18};
-  constexpr double quarter = 0.78539816339744831;
+  // What the theorem of Gauss's rule has beside rho^(-2 n), for singularities up to the inverse cube.
   constexpr double constant = 7.0;
+  constexpr double shrink = 0.72;
+  constexpr int most_ellipses = 10;
   const double digits = constant - std::log(tolerance);
   double least = max_gauss_points;
-  for (const double share : shares) {
-    const double l = share * std::clamp(log_rho, 0.01, 4.0);
-    double grown = 0.0;
-    for (int k = 0; k <= 4; ++k) grown = std::max(grown, growth(map.at(ellipse_point(l, k * quarter))));
-    least = std::min(least, (digits + grown) / (2.0 * l));
+  double l = std::clamp(log_rho, 0.01, 4.0);
+  for (int k = 0; k < most_ellipses; ++k, l *= shrink) {
+    const double grown =
+        std::max({0.0, growth(map.at(ellipse_point(l, 1.0, 0.0))), growth(map.at(ellipse_point(l, 0.0, 1.0))),
+                  growth(map.at(ellipse_point(l, -1.0, 0.0)))});
+    const double points = (digits + grown) / (2.0 * l);
+    if (points > least) break;
+    least = points;
   }
   return std::max(2, static_cast<int>(std::ceil(least)));
 }

@@ -239,5 +239,76 @@ TEST(TargetRules, TargetsBesideACutLieOffTheElement) {
   }
 }
 
+std::vector<std::pair<std::string, ElementTable<2>>> curve_elements() {
+  return {{"line", testing::curve_element({{0, 0, 1}, {3, 1, 1}})},
+          {"quarter circle", testing::curve_element({{1, 0, 1}, {1, 1, std::sqrt(0.5)}, {0, 1, 1}})},
+          {"wave", testing::curve_element({{0, 0, 1}, {1, 1.5, 1}, {2, -1.5, 1}, {3, 0.5, 1}})},
+          {"uneven line", testing::curve_element({{0, 0, 1}, {0.1, 0, 1}, {1, 0, 1}})},
+          {"rational", testing::curve_element({{0, 0, 1}, {0.4, 0.3, 2}, {0.8, 0.1, 0.5}, {1, 0.6, 1.5}})}};
+}
+
+TEST(TargetRules, CurvesKeepTheTolerance) {
+  for (const auto& [name, table] : curve_elements()) {
+    for (const double at : {1e-6, 1e-3, 0.02, 0.31, 0.55, 0.9999}) {
+      const Point<1> place(at);
+      const Target<2> own = own_target(table, place);
+      const std::string words = name + " at " + std::to_string(at);
+      expect_errors(errors(table, own, 1e-12), {1e-11, 1e-11, 0, 0}, words);
+      const ElementJet<2> jet = element_jet<2>(element_net(table, table.elements[0]), place, Point2::Zero());
+      for (const double distance : {1e-4, 1e-3, 1e-2, 0.1, 0.5, 2.0, 10.0}) {
+        const Vector<2> across(distance * jet.first[0][1], -distance * jet.first[0][0]);
+        const double rounding = 1e-15 / distance;
+        expect_errors(errors(table, Target<2>{jet.offset + across}, 1e-12),
+                      {1e-11, 1e-11 + rounding, 1e-11 + rounding, 1e-10 + 10 * rounding},
+                      words + ", distance " + std::to_string(distance));
+      }
+    }
+  }
+}
+
+TEST(TargetRules, TheUnitOfLengthPlaysNoPart) {
+  for (const auto& [name, table] : testing::surface_elements()) {
+    for (const double scale : {1e-3, 1e3}) {
+      ElementTable<3> scaled = table;
+      for (std::size_t k = 0; k < scaled.nets.size(); ++k) {
+        if (k % 4 != 3) scaled.nets[k] *= scale;
+      }
+      const TargetRules<3> rules(table, {1e-10, degree});
+      const TargetRules<3> scaled_rules(scaled, {1e-10, degree});
+      NodeBuffer<3> buffer;
+      for (const double distance : {0.0, 1e-3, 0.1, 1.0, 5.0}) {
+        const Point2 place(0.3, 0.6);
+        Target<3> target = distance == 0.0 ? own_target(table, place) : near_target(table, place, distance);
+        const std::size_t count = rules.nodes(0, target, buffer).size();
+        target.position *= scale;
+        EXPECT_EQ(scaled_rules.nodes(0, target, buffer).size(), count) << words(name, target, distance);
+      }
+    }
+  }
+}
+
+// Far below what can be checked: the rules stay of a reasonable size and finite.
+TEST(TargetRules, TinyDistancesDoNoHarm) {
+  for (const auto& [name, table] : testing::surface_elements()) {
+    const TargetRules<3> rules(table, {1e-12, degree});
+    NodeBuffer<3> buffer;
+    for (const double distance : {1e-6, 1e-9, 1e-13}) {
+      for (const Point2& place : {Point2(0.3, 0.6), Point2(0.0, 0.4), Point2(1e-9, 0.2)}) {
+        const Target<3> target = near_target(table, place, distance);
+        const NodeView<3> nodes = rules.nodes(0, target, buffer);
+        double angle = 0.0;
+        for (std::size_t q = 0; q < nodes.size(); ++q) {
+          const Vector3 d = offset_of(nodes, target.position, q);
+          for (std::size_t c = 0; c < 3; ++c)
+            angle += nodes.weight[q] * d[static_cast<Eigen::Index>(c)] * nodes.normal[c][q] / std::pow(d.norm(), 3);
+        }
+        EXPECT_LT(nodes.size(), 60000U) << words(name, target, distance);
+        // A solid angle: no surface here is seen from both sides of a full one.
+        EXPECT_LE(std::abs(angle), 4.0 * M_PI) << words(name, target, distance);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace isorim::quadrature
