@@ -251,7 +251,7 @@ template <int Dim>
 NodeView<Dim> TargetRules<Dim>::far_nodes(int element, double distance) const {
   ElementState<Dim>& state = state_->elements[static_cast<std::size_t>(element)];
   std::size_t level = far_levels.size() - 1;
-  while (level > 0 && 1.0 + 2.0 * distance < far_levels[level]) --level;
+  while (level > 0 && state.shape.radius + distance < far_levels[level] * state.shape.radius) --level;
   std::array<int, Dim - 1> orders = state.far_orders[level];
   for (int& order : orders) order = std::min(order, most_kept_order);
   return state_->kept(state, orders).view;

@@ -82,8 +82,8 @@ class TargetRules {
   /// several threads with different buffers.
   NodeView<Dim> nodes(int element, const Target<Dim>& target, NodeBuffer<Dim>& buffer) const;
 
-  /// The kept rule of an element that serves all targets at least `distance` away from its sphere, in units of the
-  /// sphere's diameter; 0.2 at least.
+  /// The kept rule of an element that serves all targets at least `distance` away from its sphere; at least a third of
+  /// its radius.
   NodeView<Dim> far_nodes(int element, double distance) const;
 
   /// A sphere (circle) that holds the element.

@@ -29,7 +29,7 @@ void evaluate_kernel(benchmark::State& state,
   const geometry::ElementTable<3> table = geometry::bezier_elements(geometry::torus(2.0, 0.5));
   const TargetRules<3> rules(table, {1e-12, 4});
   const Point3 target(0.1, 0.2, 0.3);
-  const NodeView<3> nodes = rules.far_nodes(0, 0.2);
+  const NodeView<3> nodes = rules.far_nodes(0, rules.sphere(0).radius);
   std::vector<double> values(entries * nodes.size());
   for (auto _ : state) {
     layer(Kernel{}, target, nodes, values);
