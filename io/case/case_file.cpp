@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/case/analysis_checks.h"
 #include "io/expression.h"
 
 namespace isorim::io {
@@ -27,6 +28,7 @@ std::pair<int, int> value_shape(const std::string& quantity, int dim) {
 std::vector<std::string> quantity_names(const CaseKeys& keys, int dim) {
   std::vector<std::string> names = property_names(dim);
   for (const IntegralKeys& integral : keys.integral) names.push_back(integral.name);
+  for (AnalysisQuantity& quantity : analysis_quantities(keys, dim)) names.push_back(std::move(quantity.name));
   return names;
 }
 
@@ -54,6 +56,17 @@ void check_integrals(const CaseKeys& keys, int dim, Complaints& complaints) {
   }
 }
 
+/// Rows and columns that the expected value of a quantity must have; -1 rows: any number.
+std::pair<int, int> expected_shape(const CaseKeys& keys, const std::string& name, int dim) {
+  for (const AnalysisQuantity& quantity : analysis_quantities(keys, dim)) {
+    if (quantity.name != name) continue;
+    // The row of a single point is written as a plain list.
+    if (quantity.rows == 1) return {quantity.columns, 1};
+    return {quantity.rows, quantity.columns};
+  }
+  return value_shape(name, dim);
+}
+
 void check_expectations(const CaseKeys& keys, int dim, Complaints& complaints) {
   const std::vector<std::string> known = quantity_names(keys, dim);
   for (const auto& [name, expectation] : keys.expect.quantities) {
@@ -64,8 +77,8 @@ void check_expectations(const CaseKeys& keys, int dim, Complaints& complaints) {
     if (name == "mass" && !keys.properties.density) {
       complaints.add(expectation.where, "a mass is expected but [properties] has no density");
     }
-    const auto [rows, columns] = value_shape(name, dim);
-    if (expectation.value.values.empty()) continue;
+    const auto [rows, columns] = expected_shape(keys, name, dim);
+    if (expectation.value.values.empty() || rows < 0) continue;
     if (expectation.value.rows != rows || expectation.value.columns != columns) {
       complaints.add(expectation.value.where,
                      fmt::format("found {}; expected {}", shape_text(expectation.value.rows, expectation.value.columns),
@@ -94,21 +107,38 @@ void check_convergence(const CaseKeys& keys, int dim, Complaints& complaints) {
   }
 }
 
+/// Parses an integrand; over the boundary of an analysis it may name the solution.
+void parse_integrand(const CaseFile& file, const IntegralKeys& integral, int dim) {
+  const auto scope = integral.over == IntegralOver::domain ? ExpressionScope::domain : ExpressionScope::boundary;
+  if (is_result_integral(file, integral, dim)) {
+    compile_function(integral.integrand, result_names(file.keys.analysis->equation, dim), dim, file.definitions);
+  } else if (dim == 2) {
+    compile_integrand<2>(integral.integrand, scope, file.definitions);
+  } else {
+    compile_integrand<3>(integral.integrand, scope, file.definitions);
+  }
+}
+
 /// Every integrand must parse; an empty one has been complained of.
-void check_integrands(const CaseKeys& keys, int dim, Complaints& complaints) {
-  for (const IntegralKeys& integral : keys.integral) {
+void check_integrands(const CaseFile& file, int dim, Complaints& complaints) {
+  for (const IntegralKeys& integral : file.keys.integral) {
     if (integral.integrand.empty()) continue;
-    const auto scope = integral.over == IntegralOver::domain ? ExpressionScope::domain : ExpressionScope::boundary;
     try {
-      if (dim == 2) {
-        compile_integrand<2>(integral.integrand, scope);
-      } else {
-        compile_integrand<3>(integral.integrand, scope);
-      }
+      parse_integrand(file, integral, dim);
     } catch (const InputError& error) {
       complaints.add(integral.where.key("integrand", integral.where.place), error.what());
     }
   }
+}
+
+std::vector<std::string> patch_names(const AnyBoundary& shape) {
+  std::vector<std::string> names;
+  std::visit(
+      [&](const auto& known) {
+        for (const auto& patch : known.boundary.patches) names.push_back(patch.name);
+      },
+      shape);
+  return names;
 }
 
 void check_poles(const CaseKeys& keys, int dim, Complaints& complaints) {
@@ -175,8 +205,10 @@ CaseFile read_case(const Value& root, const std::filesystem::path& path, const F
   schema<CaseKeys>().read(root, file.keys, {root.place, ""}, complaints);
   if (has_sound_geometry(root)) {
     if (const std::optional<int> dim = build_shape(file, options, complaints)) {
+      check_definitions(file, *dim, complaints);
       check_integrals(file.keys, *dim, complaints);
-      check_integrands(file.keys, *dim, complaints);
+      check_integrands(file, *dim, complaints);
+      check_analysis(file, *dim, patch_names(file.shape), complaints);
       check_expectations(file.keys, *dim, complaints);
       check_convergence(file.keys, *dim, complaints);
       check_poles(file.keys, *dim, complaints);

@@ -6,10 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "io/case/analysis_keys.h"
 #include "io/case/file_shape.h"
 #include "io/case/schema.h"
 #include "io/case/shape_builder.h"
 #include "io/case/shape_keys.h"
+#include "io/expression.h"
 
 /// A case file, read and validated: the keys as they stand there with their defaults filled in. The declarations are
 /// in section_declarations.cpp and shape_declarations.cpp.
@@ -72,19 +74,31 @@ struct ConvergenceKeys {
 
 struct CaseKeys {
   std::string title;
-  std::string source;
+  SourceEntry source;
   GeometryKeys geometry;
   PropertiesKeys properties;
   std::vector<IntegralKeys> integral;
   ExpectKeys expect;
   OutputKeys output;
   std::optional<ConvergenceKeys> convergence;
+  DefinitionsKeys definitions;
+  std::optional<AnalysisKeys> analysis;
+  std::optional<MaterialKeys> material;
+  std::vector<BoundaryConditionKeys> boundary_condition;
+  std::optional<BodyForceKeys> body_force;
+  std::optional<DiscretisationKeys> discretisation;
+  std::optional<SolveKeys> solve;
+  std::vector<ProbeKeys> probe;
+  std::vector<GridKeys> grid;
+  std::optional<ExactKeys> exact;
   KeyPlace where;
 };
 
 struct CaseFile {
   std::filesystem::path path;
   CaseKeys keys;
+  /// Those of [definitions], sound.
+  Definitions definitions;
   /// The shape that `keys.geometry` describes.
   AnyBoundary shape;
   /// If the shape comes from a CAD file.

@@ -109,13 +109,13 @@ std::string case_overview() {
   const Description& root = schema<CaseKeys>().description();
   std::string text = "A case file is TOML. Its keys and sections (isorim help case SECTION tells the keys of one):\n\n";
   for (const KeyDescription& key : root.keys) {
-    text += fmt::format("  {:<14} {}\n", key.name, wrapped(key.text, 96, 17));
+    text += fmt::format("  {:<18} {}\n", key.name, wrapped(key.text, 92, 21));
   }
   text += "\nThe types of [geometry] (isorim help case TYPE tells the keys of one):\n\n";
   const std::vector<std::string>& types = type_tags<GeometryKeys>().names;
   const std::vector<const Description*> shapes = KeyType<GeometryKeys>::nested();
   for (std::size_t i = 0; i < types.size(); ++i) {
-    text += fmt::format("  {:<14} {}\n", types[i], wrapped(shapes[i]->text, 96, 17));
+    text += fmt::format("  {:<18} {}\n", types[i], wrapped(shapes[i]->text, 92, 21));
   }
   return text;
 }

@@ -106,7 +106,9 @@ const Schema<ExpectKeys>& schema<ExpectKeys>() {
   static const auto declared =
       Schema<ExpectKeys>("expect",
                          "Expected values, one a quantity (perimeter, area, volume, centroid, inertia, "
-                         "principal_moments, mass, closure_defect or the name of an integral), as "
+                         "principal_moments, mass, closure_defect or the name of an integral; of an analysis "
+                         "unknowns, iterations, residual, balance, errors against [exact] such as boundary_l2, "
+                         "and \"NAME.value\" of a probe or boundary condition), as "
                          "quantity = { value, rtol, atol }.");
   return declared;
 }
@@ -202,14 +204,28 @@ const Schema<CaseKeys>& schema<CaseKeys>() {
   static const auto declared =
       Schema<CaseKeys>("case", "A case file: the keys and sections at its top.")
           .key("title", &CaseKeys::title, {.text = "What the case is; the file's name if absent."})
-          .key("source", &CaseKeys::source, {.text = "Where the shape and its expected values come from."})
+          .key(
+              "source", &CaseKeys::source,
+              {.text =
+                   "Where the shape and its expected values come from; or the section [source] of Poisson's equation."})
           .key("geometry", &CaseKeys::geometry, {.text = "The shape, by its \"type\".", .presence = required})
           .key("properties", &CaseKeys::properties, {.text = "How the integrals are computed."})
           .key("integral", &CaseKeys::integral, {.text = "Integrals: [[integral]], any number."})
           .key("expect", &CaseKeys::expect, {.text = "Expected values."})
           .key("output", &CaseKeys::output, {.text = "What is written."})
           .key("convergence", &CaseKeys::convergence, {.text = "A study of fixed Gauss rules."})
-          .later({"analysis", "boundary_condition", "discretisation", "solve", "probe", "exact", "hydrostatics"});
+          .key("definitions", &CaseKeys::definitions, {.text = "Names for use in the expressions of the case."})
+          .key("analysis", &CaseKeys::analysis, {.text = "A boundary-element analysis: what is solved."})
+          .key("material", &CaseKeys::material, {.text = "Analysis: the material."})
+          .key("boundary_condition", &CaseKeys::boundary_condition,
+               {.text = "Analysis: what holds on the boundary, [[boundary_condition]], any number."})
+          .key("body_force", &CaseKeys::body_force, {.text = "Elasticity: loads in the domain."})
+          .key("discretisation", &CaseKeys::discretisation, {.text = "Analysis: the functions on the boundary."})
+          .key("solve", &CaseKeys::solve, {.text = "Analysis: how the equations are solved."})
+          .key("probe", &CaseKeys::probe, {.text = "Analysis: points where the solution is wanted, [[probe]]."})
+          .key("grid", &CaseKeys::grid, {.text = "Analysis: grids of such points, [[grid]]."})
+          .key("exact", &CaseKeys::exact, {.text = "Analysis: the exact solution, to measure errors."})
+          .later({"hydrostatics"});
   return declared;
 }
 

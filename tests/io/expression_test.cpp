@@ -84,5 +84,30 @@ TEST(Expression, FaultsAreLocated) {
   EXPECT_EQ(message("x + nx", ExpressionScope::boundary), "");
 }
 
+TEST(Definitions, StandForTheirExpressionsEverywhere) {
+  const Definitions definitions{{"a", "2"}, {"b", "3*a"}, {"r", "sqrt(x^2 + y^2)"}, {"s", "b*r"}};
+  const auto f = compile_integrand<2>("s + r/a + nx", ExpressionScope::boundary, definitions)();
+  geometry::Points<2> points(2, 2);
+  geometry::Points<2> normals(2, 2);
+  points << 3, 0, 4, 2;
+  normals << 7, 8, 0, 0;
+  std::vector<double> values(2);
+  f(points, normals, values);
+  EXPECT_EQ(values[0], 30.0 + 2.5 + 7.0);
+  EXPECT_EQ(values[1], 12.0 + 1.0 + 8.0);
+}
+
+TEST(Definitions, AreConstantIfNoCoordinatePlaysAPart) {
+  const Definitions definitions{{"a", "2"}, {"b", "3*a"}, {"r", "a*x"}};
+  EXPECT_EQ(constant_value("b + 1", 2, definitions), 7.0);
+  EXPECT_EQ(constant_value("b + y", 2, definitions), std::nullopt);
+  EXPECT_EQ(constant_value("r", 2, definitions), std::nullopt);
+}
+
+TEST(NamedFunction, TakesItsVariablesInOrder) {
+  const auto f = compile_function("u*nx + c*q", {"x", "y", "nx", "ny", "u", "q"}, 2, {{"c", "x + 10"}})();
+  EXPECT_EQ(f(std::vector<double>{1, 2, 3, 4, 5, 6}), 15.0 + 66.0);
+}
+
 }  // namespace
 }  // namespace isorim::io

@@ -1,5 +1,3 @@
-#include <filesystem>
-#include <ostream>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -7,31 +5,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/io/cli/program_test.h"
+#include "tests/io/cli/bad_case.h"
 
 namespace isorim::testing {
 namespace {
 
 using ::testing::HasSubstr;
 
-/// A minimal bad case and what the message must say.
-struct BadCase {
-  std::string name;
-  std::string text;
-  std::vector<std::string> fragments;
-
-  friend std::ostream& operator<<(std::ostream& out, const BadCase& bad) { return out << bad.name; }
-};
-
-class BadInput : public ProgramTest, public ::testing::WithParamInterface<BadCase> {};
+class BadInput : public BadCaseTest {};
 
 TEST_P(BadInput, IsRefusedWithStatus2AndNothingWritten) {
-  const ProgramResult result = run_case(GetParam().text);
-  EXPECT_EQ(result.status, 2) << result.err;
-  for (const std::string& fragment : GetParam().fragments) EXPECT_THAT(result.err, HasSubstr(fragment));
-  EXPECT_THAT(result.err, HasSubstr("case.toml:"));
-  EXPECT_EQ(result.out, "");
-  EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
+  expect_refusal();
 }
 
 const std::string circle = "[geometry]\ntype = 'circle'\nradius = 1\n";
@@ -76,7 +60,7 @@ const std::vector<BadCase> keys{
     {"LaterType",
      "[geometry]\ntype = 'hull'\noffsets = 'a.csv'\n",
      {"the type \"hull\" is not available in this version"}},
-    {"LaterSection", circle + "[analysis]\nequation = 'laplace'\n", {"analysis: not available in this version"}},
+    {"LaterSection", circle + "[hydrostatics]\ndraught = 1\n", {"hydrostatics: not available in this version"}},
     {"LaterKey", circle + "clip = { normal = [1, 0] }\n", {"geometry.clip: not available in this version"}},
 };
 
@@ -417,18 +401,14 @@ const std::vector<BadCase> quantities{
      {"convergence.points: found from = 3 above to = 1"}},
 };
 
-std::string case_name(const ::testing::TestParamInfo<BadCase>& info) {
-  return info.param.name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Syntax, BadInput, ::testing::ValuesIn(syntax), case_name);
-INSTANTIATE_TEST_SUITE_P(Keys, BadInput, ::testing::ValuesIn(keys), case_name);
-INSTANTIATE_TEST_SUITE_P(Types, BadInput, ::testing::ValuesIn(types), case_name);
-INSTANTIATE_TEST_SUITE_P(Ranges, BadInput, ::testing::ValuesIn(ranges), case_name);
-INSTANTIATE_TEST_SUITE_P(Shapes, BadInput, ::testing::ValuesIn(shapes), case_name);
-INSTANTIATE_TEST_SUITE_P(Cuts, BadInput, ::testing::ValuesIn(cuts), case_name);
-INSTANTIATE_TEST_SUITE_P(TSplines, BadInput, ::testing::ValuesIn(tsplines), case_name);
-INSTANTIATE_TEST_SUITE_P(Quantities, BadInput, ::testing::ValuesIn(quantities), case_name);
+INSTANTIATE_TEST_SUITE_P(Syntax, BadInput, ::testing::ValuesIn(syntax), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(Keys, BadInput, ::testing::ValuesIn(keys), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(Types, BadInput, ::testing::ValuesIn(types), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(Ranges, BadInput, ::testing::ValuesIn(ranges), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(Shapes, BadInput, ::testing::ValuesIn(shapes), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(Cuts, BadInput, ::testing::ValuesIn(cuts), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(TSplines, BadInput, ::testing::ValuesIn(tsplines), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(Quantities, BadInput, ::testing::ValuesIn(quantities), bad_case_name);
 
 class SeveralFaults : public ProgramTest {};
 

@@ -1,0 +1,184 @@
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/io/cli/bad_case.h"
+
+namespace isorim::testing {
+namespace {
+
+class BadAnalysis : public BadCaseTest {};
+
+TEST_P(BadAnalysis, IsRefusedWithStatus2AndNothingWritten) {
+  expect_refusal();
+}
+
+const std::string circle = "[geometry]\ntype = 'circle'\nradius = 1\n";
+const std::string square = "[geometry]\ntype = 'rectangle'\nsize = [1, 1]\n";
+const std::string box = "[geometry]\ntype = 'box'\nsize = [1, 1, 1]\n";
+const std::string laplace = "[analysis]\nequation = 'laplace'\n";
+const std::string elastic = "[analysis]\nequation = 'elasticity'\n[material]\nyoung = 1\npoisson = 0.3\n";
+const std::string everywhere = "[[boundary_condition]]\nkind = 'value'\nvalue = 'x'\n";
+
+std::string condition(const std::string& keys) {
+  return "[[boundary_condition]]\n" + keys + "\n";
+}
+
+const std::vector<BadCase> sections{
+    {"ConditionWithoutAnalysis", circle + everywhere, {"boundary_condition[1]: found no section [analysis]"}},
+    {"ProbeWithoutAnalysis", circle + "[[probe]]\nname = 'a'\npoints = [[0, 0]]\n", {"found no section [analysis]"}},
+    {"NoEquation", circle + "[analysis]\nexterior = true\n" + everywhere, {"the key \"equation\" (text) is missing"}},
+    {"UnknownEquation",
+     circle + "[analysis]\nequation = 'poison'\n" + everywhere,
+     {"analysis.equation: found the text \"poison\"", "(did you mean \"poisson\"?)"}},
+    {"NoCondition", circle + laplace, {"found no boundary condition; expected [[boundary_condition]]"}},
+    {"StateOfAPotential",
+     circle + laplace + "state = 'plane_stress'\n" + everywhere,
+     {"found a \"state\", which only elasticity in the plane has"}},
+    {"PoissonWithoutSource",
+     circle + "[analysis]\nequation = 'poisson'\n" + everywhere,
+     {"expected a section [source] with a \"value\""}},
+    {"SourceOfLaplace",
+     circle + laplace + everywhere + "[source]\nvalue = 1\n",
+     {"source: found a source; expected equation = \"poisson\""}},
+    {"SourceOutside",
+     circle + "[analysis]\nequation = 'poisson'\nexterior = true\n" + everywhere + "[source]\nvalue = 1\n",
+     {"loads are not available in a domain that reaches to infinity"}},
+    {"ElasticityWithoutMaterial",
+     circle + "[analysis]\nequation = 'elasticity'\n" + condition("kind = 'displacement'"),
+     {"elasticity needs \"young\" and \"poisson\" in [material]"}},
+    {"Incompressible",
+     circle + "[analysis]\nequation = 'elasticity'\n[material]\nyoung = 1\npoisson = 0.5\n" +
+         condition("kind = 'displacement'"),
+     {"material.poisson: found 0.5; expected a number > -1 and < 0.5"}},
+    {"GravityWithoutDensity",
+     square + elastic + condition("kind = 'displacement'") + "[body_force]\ngravity = [0, -10]\n",
+     {"gravity and centrifugal loads need a \"density\""}},
+    {"TemperatureWithoutExpansion",
+     square + elastic + condition("kind = 'displacement'") + "[body_force]\ntemperature = 'x'\n",
+     {"a temperature needs \"expansion\""}},
+    {"EmptyBodyForce",
+     square + elastic + condition("kind = 'displacement'") + "[body_force]\n",
+     {"expected at least one of gravity, centrifugal, force and temperature"}},
+    {"GravityInTheWrongSpace",
+     square + elastic + "density = 1\n" + condition("kind = 'displacement'") + "[body_force]\ngravity = [0, 0, 1]\n",
+     {"body_force.gravity: found 3 coordinates; expected 2"}},
+};
+
+const std::vector<BadCase> conditions{
+    {"UnknownPatch",
+     square + laplace + condition("on = 'bottm'\nkind = 'value'"),
+     {"boundary_condition[1]: found the patch \"bottm\" (did you mean \"bottom\"?)"}},
+    {"UnknownPatchInAList",
+     square + laplace + condition("on = ['bottom', 'roof']\nkind = 'value'"),
+     {"found the patch \"roof\""}},
+    {"KindOfElasticity",
+     circle + laplace + condition("kind = 'displacement'"),
+     {"boundary_condition[1].kind: a potential has value, flux, robin and symmetry"}},
+    {"KindOfAPotential",
+     circle + elastic + condition("kind = 'flux'"),
+     {"elasticity has displacement, traction, foundation and symmetry"}},
+    {"BadExpression",
+     circle + laplace + condition("kind = 'value'\nvalue = 'x + zeta'"),
+     {"case.toml:8: boundary_condition[1].value: at character 5: found the unknown name \"zeta\""}},
+    {"BadSelection",
+     circle + laplace + condition("kind = 'value'\nwhere = 'x > '"),
+     {"boundary_condition[1].where: at the end of"}},
+    {"ListForAPotential",
+     circle + laplace + condition("kind = 'value'\nvalue = [1, 2]"),
+     {"a potential is one number; expected a single expression as \"value\""}},
+    {"SingleForAVector",
+     circle + elastic + condition("kind = 'traction'\nvalue = 'x'"),
+     {"found a single expression; expected a list of 2 or a table"}},
+    {"TooManyComponents",
+     circle + elastic + condition("kind = 'traction'\nvalue = [1, 2, 3]"),
+     {"found a list of 3; expected 2 components"}},
+    {"NormalBesideAxes",
+     circle + elastic + condition("kind = 'traction'\nvalue = { x = 1, normal = 2 }"),
+     {"found \"normal\" beside x, y or z"}},
+    {"RobinWithoutCoefficient",
+     circle + laplace + condition("kind = 'robin'\nreference = 1"),
+     {"the key \"coefficient\" is missing"}},
+    {"PressureOfADisplacement",
+     circle + elastic + condition("kind = 'displacement'\npressure = 1"),
+     {"found \"pressure\", which goes with traction"}},
+    {"ValueOfSymmetry",
+     circle + elastic + condition("kind = 'symmetry'\nvalue = [0, 0]"),
+     {"found \"value\", which goes with"}},
+};
+
+const std::vector<BadCase> points{
+    {"ProbeWithoutPoints",
+     circle + laplace + everywhere + "[[probe]]\nname = 'a'\n",
+     {"probe[1]: expected exactly one of \"points\", \"from\" with \"to\", and \"file\""}},
+    {"HalfALine",
+     circle + laplace + everywhere + "[[probe]]\nname = 'a'\nfrom = [0, 0]\n",
+     {"a line needs both \"from\" and \"to\""}},
+    {"ProbeInTheWrongSpace",
+     circle + laplace + everywhere + "[[probe]]\nname = 'a'\npoints = [[0, 0, 0]]\n",
+     {"probe[1].points[1]: found 3 coordinates; expected 2"}},
+    {"NameTwice",
+     circle + laplace + everywhere +
+         "[[probe]]\nname = 'a'\npoints = [[0, 0]]\n[[grid]]\nname = 'a'\nfrom = [0, 0]\nto = [1, 1]\ncounts = [2, "
+         "2]\n",
+     {"grid[1]: the name \"a\" is taken"}},
+    {"NameWithASlash",
+     circle + laplace + everywhere + "[[probe]]\nname = 'a/b'\npoints = [[0, 0]]\n",
+     {"found the name \"a/b\"; expected letters, digits, _ and -"}},
+    {"GridWithThreeCounts",
+     circle + laplace + everywhere + "[[grid]]\nname = 'a'\nfrom = [0, 0]\nto = [1, 1]\ncounts = [2, 2, 2]\n",
+     {"found 3 counts; expected 2"}},
+    {"GridInsideOut",
+     circle + laplace + everywhere + "[[grid]]\nname = 'a'\nfrom = [0, 1]\nto = [1, 0]\ncounts = [2, 2]\n",
+     {"\"from\" is not below \"to\" in y"}},
+    {"SkewSides",
+     box + laplace + everywhere +
+         "[[grid]]\nname = 'a'\ncorner = [0, 0, 0]\nsides = [[1, 0, 0], [1, 1, 0]]\ncounts = [2, 2]\n",
+     {"the sides are not at right angles"}},
+};
+
+const std::vector<BadCase> expected{
+    {"ErrorWithoutExact",
+     circle + laplace + everywhere + "[expect]\nboundary_l2 = { value = 0, atol = 1 }\n",
+     {"found the quantity \"boundary_l2\""}},
+    {"ProbeThatIsNotThere",
+     circle + laplace + everywhere + "[expect]\n'line.value' = { value = 0, atol = 1 }\n",
+     {"found the quantity \"line.value\""}},
+    {"WrongNumberOfProbeValues",
+     circle + laplace + everywhere +
+         "[[probe]]\nname = 'line'\npoints = [[0, 0], [0.1, 0]]\n[expect]\n'line.value' = { "
+         "value = 0, atol = 1 }\n",
+     {"found a real; expected a list of 2 reals"}},
+    {"ExactStressOfAPotential",
+     circle + laplace + everywhere + "[exact]\nstress = { xx = 1 }\n",
+     {"a potential has an exact value, gradient and flux"}},
+    {"ExactValueOfElasticity",
+     circle + elastic + condition("kind = 'displacement'") + "[exact]\nvalue = 'x'\n",
+     {"elasticity has an exact displacement, stress and traction"}},
+    {"SolutionInADomain",
+     circle + laplace + everywhere + "[[integral]]\nname = 'a'\nintegrand = 'u'\n",
+     {"found the unknown name \"u\""}},
+};
+
+const std::vector<BadCase> definitions{
+    {"UndefinedName",
+     "[definitions]\na = 'b + 1'\n" + circle,
+     {"case.toml:2: definitions.a: at character 1: found the unknown name \"b\""}},
+    {"DefinedLater", "[definitions]\na = 'b'\nb = 1\n" + circle, {"definitions.a:", "found the unknown name \"b\""}},
+    {"CoordinateDefined", "[definitions]\nx = 1\n" + circle, {"the name \"x\" is a coordinate"}},
+    {"FunctionDefined", "[definitions]\nsin = 1\n" + circle, {"the name \"sin\" is a function"}},
+    {"ResultDefined", "[definitions]\nu = 1\n" + circle, {"the name \"u\" is a result of analyses"}},
+    {"NormalInADefinition",
+     "[definitions]\na = 'nx'\n" + circle,
+     {"found \"nx\", the normal, which only a boundary has"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Sections, BadAnalysis, ::testing::ValuesIn(sections), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(Conditions, BadAnalysis, ::testing::ValuesIn(conditions), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(Points, BadAnalysis, ::testing::ValuesIn(points), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(Expected, BadAnalysis, ::testing::ValuesIn(expected), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(Definitions, BadAnalysis, ::testing::ValuesIn(definitions), bad_case_name);
+
+}  // namespace
+}  // namespace isorim::testing
