@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/analysis/solution_pictures.h"
 #include "io/cli/commands.h"
 #include "io/cli/interrupts.h"
 #include "io/results/compute.h"
@@ -24,6 +25,13 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Of an analysis: fields on the boundary, probes and grids.
+void write_fields(const io::AnyModel& model, const io::Report& report, const std::filesystem::path& folder) {
+  io::write_solution_vtu(folder / "solution.vtu", model, *report.fields);
+  io::write_fields_vtu(folder / "fields.vtu", *report.fields, report.threads);
+  io::write_samples(folder, *report.analysis);
+}
+
 void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io::Convergence& study,
                    io::Report& report, const std::filesystem::path& folder) {
   const HeldInterrupts held;
@@ -32,6 +40,7 @@ void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io
   const io::OutputKeys& output = file.keys.output;
   if (output.vtk) io::write_boundary_vtu(folder / "boundary.vtu", model);
   if (output.vtk && io::has_edges(model)) io::write_edges_vtu(folder / "edges.vtu", model);
+  if (output.vtk && report.fields) write_fields(model, report, folder);
   if (output.svg) io::write_boundary_svg(folder / "boundary.svg", report.title, model);
   if (output.svg) io::write_tmesh_svgs(folder, file.shape);
   if (file.keys.convergence) {

@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/analysis/analysis.h"
+#include "io/case/analysis_checks.h"
 #include "io/case/curve_builder.h"
 #include "io/case/shape_builder.h"
 #include "io/expression.h"
@@ -246,8 +248,8 @@ void add_properties(const CaseFile& file, const Model<Dim>& model, const RunOpti
 template <int Dim>
 Quantity integrate(const CaseFile& file, const IntegralKeys& keys, const Model<Dim>& model, const RunOptions& run) {
   const bool over_domain = keys.over == IntegralOver::domain;
-  const quadrature::IntegrandFactory<Dim> integrand =
-      compile_integrand<Dim>(keys.integrand, over_domain ? ExpressionScope::domain : ExpressionScope::boundary);
+  const quadrature::IntegrandFactory<Dim> integrand = compile_integrand<Dim>(
+      keys.integrand, over_domain ? ExpressionScope::domain : ExpressionScope::boundary, file.definitions);
   quadrature::Options options =
       integration_options(file.keys.properties, run, fmt::format("integral \"{}\"", keys.name));
   options.tolerance = keys.tolerance.value_or(file.keys.properties.tolerance);
@@ -274,12 +276,45 @@ void check_finite(const std::vector<Quantity>& quantities, const std::string& fi
   }
 }
 
+// --- Analyses -------------------------------------------------------------------------------------------------
+
+/// Errors that do not say which file they are about learn it.
+template <class Action>
+auto named_after(const CaseFile& file, Action&& action) {
+  try {
+    return action();
+  } catch (Error& error) {
+    const std::string path = file.path.string();
+    if (!std::string_view(error.what()).starts_with(path)) error.add_context(path);
+    throw;
+  }
+}
+
+template <int Dim>
+void add_analysis(const CaseFile& file, const Model<Dim>& model, const RunOptions& run, Report& report) {
+  if (!file.keys.analysis) return;
+  Analysis<Dim> analysis = named_after(file, [&] {
+    return located(common_keys(file.keys.geometry).where, [&] { return analyse(file, model.oriented, run); });
+  });
+  report.integrals.insert(report.integrals.end(), analysis.integrals.begin(), analysis.integrals.end());
+  report.warnings.insert(report.warnings.end(), analysis.report.messages.begin(), analysis.report.messages.end());
+  report.analysis = std::move(analysis.report);
+  report.fields = std::make_shared<const AnyAnalysis>(AnyAnalysis{std::move(analysis)});
+}
+
 // --- Expectations ---------------------------------------------------------------------------------------------
 
 void compare_expectations(const CaseFile& file, Report& report) {
   const Quantity closure{"closure_defect", single(report.geometry.closure_defect), {}, {}, {}, ""};
+  const std::vector<Quantity> of_analysis =
+      report.analysis ? expected_quantities(*report.analysis) : std::vector<Quantity>();
+  const auto find = [&](const std::string& name) -> const Quantity* {
+    if (name == closure.name) return &closure;
+    const auto found = std::ranges::find(of_analysis, name, &Quantity::name);
+    return found == of_analysis.end() ? report.find(name) : &*found;
+  };
   for (const auto& [name, keys] : file.keys.expect.quantities) {
-    const Quantity* quantity = name == closure.name ? &closure : report.find(name);
+    const Quantity* quantity = find(name);
     if (!quantity) throw InputError(fmt::format("{}: no result \"{}\"", keys.where.place.describe(), name));
     report.expectations.push_back(compare(*quantity, {keys.value.values, keys.value.rows, keys.value.columns},
                                           keys.rtol.value_or(0.0), keys.atol.value_or(0.0)));
@@ -311,12 +346,15 @@ Report report_of(const CaseFile& file, const Model<Dim>& model, const RunOptions
   report.cad = file.cad;
   if (file.cad) report.warnings = file.cad->warnings;
   add_properties(file, model, run, report);
-  for (const IntegralKeys& keys : file.keys.integral) report.integrals.push_back(integrate(file, keys, model, run));
+  for (const IntegralKeys& keys : file.keys.integral) {
+    if (!is_result_integral(file, keys, Dim)) report.integrals.push_back(integrate(file, keys, model, run));
+  }
+  report.timings.integrate = seconds_since(start);
+  add_analysis(file, model, run, report);
   check_finite(report.properties, file.path.string());
   check_finite(report.integrals, file.path.string());
   compare_expectations(file, report);
   report.status = overall_status(report);
-  report.timings.integrate = seconds_since(start);
   return report;
 }
 

@@ -13,6 +13,7 @@
 #include <hdf5.h>
 
 #include "geometry/errors.h"
+#include "io/analysis/analysis.h"
 #include "io/atomic_file.h"
 
 namespace isorim::io {
@@ -280,6 +281,101 @@ void write_geometry(hid_t file, const Report& report, const AnyModel& model) {
   std::visit([&](const auto& known) { write_model(group, known); }, model);
 }
 
+// --- Analyses -------------------------------------------------------------------------------------------------
+
+/// Points in rows.
+void write_columns(hid_t group, const std::string& name, const Eigen::MatrixXd& columns) {
+  if (columns.rows() == 0) return;
+  const std::vector<double> values(columns.data(), columns.data() + columns.size());
+  write_dataset(group, name, values, {static_cast<hsize_t>(columns.cols()), static_cast<hsize_t>(columns.rows())});
+}
+
+void write_samples(hid_t parent, const FieldSamples& samples) {
+  const Handle group = open_group(parent, samples.name);
+  if (samples.image) {
+    const std::array<int, 3>& counts = samples.image->counts;
+    write_dataset(group, "counts", std::vector<std::int32_t>(counts.begin(), counts.end()), {3});
+  }
+  write_columns(group, "points", samples.points);
+  const std::vector<std::int8_t> location(samples.location.begin(), samples.location.end());
+  write_dataset(group, "location", location, {location.size()});
+  write_columns(group, "value", samples.value);
+  write_columns(group, "gradient", samples.gradient);
+  write_columns(group, "stress", samples.stress);
+  if (samples.is_elastic()) write_columns(group, "von_mises", samples.von_mises.transpose());
+  write_columns(group, "principal", samples.principal);
+}
+
+/// The functions of a space and the coefficients of the solution.
+template <int Dim>
+void write_space(hid_t parent, const Analysis<Dim>& analysis) {
+  const solver::FieldSpace<Dim>& space = analysis.setting.space;
+  const Handle group = open_group(parent, "space");
+  write_elements(group, space.table);
+  if (!space.table.regions.empty()) write_regions(group, space.table.regions);
+  std::vector<std::int32_t> degrees;
+  std::vector<std::int8_t> rational;
+  std::vector<std::int64_t> first_functions;
+  std::vector<std::int32_t> counts;
+  std::vector<std::int64_t> first_rows;
+  for (const solver::FieldElement<Dim>& element : space.elements) {
+    for (const std::int8_t degree : element.degree) degrees.push_back(degree);
+    rational.push_back(element.rational ? 1 : 0);
+    first_functions.push_back(static_cast<std::int64_t>(element.first));
+    counts.push_back(element.count);
+    first_rows.push_back(static_cast<std::int64_t>(element.row));
+  }
+  const hsize_t count = space.elements.size();
+  write_dataset(group, "degrees", degrees, {count, Dim - 1});
+  write_dataset(group, "rational", rational, {count});
+  write_dataset(group, "first_function", first_functions, {count});
+  write_dataset(group, "function_count", counts, {count});
+  write_dataset(group, "functions", space.functions, {space.functions.size()});
+  write_dataset(group, "first_row", first_rows, {count});
+  write_dataset(group, "rows", space.rows, {space.rows.size()});
+  write_dataset(group, "condition", analysis.setting.problem.condition_of, {count});
+  Eigen::MatrixXd points(Dim, static_cast<Eigen::Index>(space.points.size()));
+  for (std::size_t i = 0; i < space.points.size(); ++i) {
+    points.col(static_cast<Eigen::Index>(i)) = space.points[i].position;
+  }
+  write_columns(group, "collocation_points", points);
+  write_columns(group, "potential", analysis.solution.potential.transpose());
+  write_columns(group, "flux", analysis.solution.flux.transpose());
+}
+
+void write_conditions(hid_t parent, const std::vector<ConditionResult>& conditions) {
+  const Handle group = open_group(parent, "boundary_conditions");
+  for (const ConditionResult& result : conditions) {
+    const Handle one = open_group(group, result.name);
+    write_text_attribute(one, "kind", result.kind);
+    write_attribute<std::int32_t>(one, "elements", result.elements);
+    write_attribute<double>(one, "measure", result.measure);
+    write_columns(one, result.moment.size() > 0 ? "force" : "flux", result.flux);
+    if (result.moment.size() > 0) write_columns(one, "moment", result.moment);
+  }
+}
+
+void write_analysis(hid_t file, const AnalysisReport& report, const AnyAnalysis& fields) {
+  const Handle group = open_group(file, "analysis");
+  write_text_attribute(group, "equation", report.equation);
+  write_text_attribute(group, "method", report.method);
+  write_attribute<std::int8_t>(group, "exterior", report.exterior ? 1 : 0);
+  write_attribute<std::int64_t>(group, "unknowns", static_cast<std::int64_t>(report.unknowns));
+  write_attribute<std::int32_t>(group, "iterations", report.iterations);
+  write_attribute<double>(group, "residual", report.residual);
+  write_attribute<std::int64_t>(group, "matrix_memory", static_cast<std::int64_t>(report.matrix_memory));
+  write_attribute<std::int64_t>(group, "peak_memory", static_cast<std::int64_t>(report.peak_memory));
+  if (report.balance) write_attribute<double>(group, "balance", *report.balance);
+  const Handle errors = open_group(group, "errors");
+  for (const auto& [name, value] : report.errors) write_attribute<double>(errors, name, value);
+  write_conditions(group, report.conditions);
+  const Handle probes = open_group(group, "probes");
+  for (const FieldSamples& samples : report.probes) write_samples(probes, samples);
+  const Handle grids = open_group(group, "grids");
+  for (const FieldSamples& samples : report.grids) write_samples(grids, samples);
+  std::visit([&](const auto& known) { write_space(group, known); }, fields.known);
+}
+
 void write_report(hid_t file, const Report& report, const AnyModel& model) {
   write_text_attribute(file, "isorim", report.version);
   write_text_attribute(file, "case", report.title);
@@ -289,6 +385,7 @@ void write_report(hid_t file, const Report& report, const AnyModel& model) {
   write_geometry(file, report, model);
   write_quantities(file, "properties", report.properties);
   write_quantities(file, "integrals", report.integrals);
+  if (report.analysis) write_analysis(file, *report.analysis, *report.fields);
   write_expectations(file, report.expectations);
   const Handle timings = open_group(file, "timings");
   write_attribute<double>(timings, "read", report.timings.read);

@@ -23,6 +23,14 @@ namespace isorim::io {
 ///   /properties/NAME        datasets value, error; attributes evaluations, status, reason where they apply
 ///   /integrals/NAME         the same
 ///   /expectations/NAME      datasets value, expected; attributes error, difference, rtol, atol, met
+///   /analysis               of an analysis: attributes equation, method, unknowns, ... as in results.json
+///   /analysis/errors        attributes
+///   /analysis/boundary_conditions/NAME   attributes kind, elements, measure; datasets flux, or force and moment
+///   /analysis/probes/NAME, grids/NAME    points x Dim; location (1 inside, 0 boundary, -1 outside); value, gradient,
+///                           stress, von_mises, principal: a row a point (grids also counts)
+///   /analysis/space         elements and regions as in /geometry; degrees, rational, first_function,
+///                           function_count, functions, first_row, rows: see solver/bem/field_space.h; condition;
+///                           collocation_points; potential and flux: coefficients, a row a function
 ///   /timings                attributes read, integrate, write (seconds)
 ///
 /// The file appears whole or not at all. Throws InputError with the path if it cannot be written.

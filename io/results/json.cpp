@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "io/atomic_file.h"
+#include "io/results/analysis_json.h"
 #include "io/results/json_parts.h"
 
 namespace isorim::io {
@@ -82,6 +83,7 @@ std::string to_json(const Report& report) {
   if (report.cad) json["cad"] = cad_json(*report.cad);
   json["properties"] = quantities_json(report.properties);
   json["integrals"] = quantities_json(report.integrals);
+  if (report.analysis) json["analysis"] = analysis_json(*report.analysis);
   json["expectations"] = expectations_json(report.expectations);
   json["timings"] = {{"read", number(report.timings.read)},
                      {"integrate", number(report.timings.integrate)},

@@ -1,17 +1,21 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/cad/cad_facts.h"
+#include "io/results/analysis_report.h"
 #include "quadrature/estimate.h"
 
 /// What a run found, free of dimension and of file formats: the writers of the terminal's table, results.json and
 /// results.h5 all start from it.
 namespace isorim::io {
+
+struct AnyAnalysis;
 
 /// A number, a vector (columns = 1) or a matrix, entry by entry along the rows.
 struct Entries {
@@ -109,6 +113,9 @@ struct Report {
   std::optional<CadFacts> cad;
   std::vector<Quantity> properties;
   std::vector<Quantity> integrals;
+  /// If the case is an analysis; its fields on the boundary, for the writers of pictures.
+  std::optional<AnalysisReport> analysis;
+  std::shared_ptr<const AnyAnalysis> fields;
   std::vector<ExpectationResult> expectations;
   Timings timings;
   int threads = 1;

@@ -9,20 +9,16 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
-#include <vtkErrorCode.h>
-#include <vtkExecutive.h>
 #include <vtkFieldData.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkSignedCharArray.h>
-#include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkTypeInt64Array.h>
@@ -32,9 +28,9 @@
 
 #include "geometry/errors.h"
 #include "geometry/spline/bspline.h"
-#include "io/atomic_file.h"
 #include "io/vtk/bernstein.h"
 #include "io/vtk/region_triangles.h"
+#include "io/vtk/xml_output.h"
 
 namespace isorim::io {
 
@@ -313,36 +309,9 @@ vtkUnstructuredGrid* GridBuilder::finish() {
   return grid_;
 }
 
-/// VTK would print its errors; this keeps them for the message of ours.
-vtkSmartPointer<vtkCallbackCommand> error_collector(std::string& messages) {
-  auto collector = vtkSmartPointer<vtkCallbackCommand>::New();
-  collector->SetClientData(&messages);
-  collector->SetCallback([](vtkObject*, unsigned long, void* client, void* text) {
-    if (text != nullptr) *static_cast<std::string*>(client) += static_cast<const char*>(text);
-  });
-  return collector;
-}
-
 void write_grid(const std::filesystem::path& path, vtkUnstructuredGrid* grid) {
-  AtomicFile file(path);
-  std::string messages;
-  const auto collector = error_collector(messages);
-  vtkNew<vtkXMLUnstructuredGridWriter> writer;
-  for (vtkObject* source : {static_cast<vtkObject*>(writer), static_cast<vtkObject*>(writer->GetExecutive())}) {
-    source->AddObserver(vtkCommand::ErrorEvent, collector);
-  }
-  writer->SetFileName(file.temporary().c_str());
-  writer->SetInputData(grid);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetCompressorTypeToNone();
-  writer->SetHeaderTypeToUInt64();
-  const bool written = writer->Write() == 1 && writer->GetErrorCode() == vtkErrorCode::NoError && messages.empty();
-  if (!written) {
-    throw InputError(fmt::format("cannot write '{}': {}", path.string(),
-                                 vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode())));
-  }
-  file.commit();
+  const vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  write_xml(path, writer, grid);
 }
 
 void add_content_and_write(const std::filesystem::path& path, GridBuilder& builder, const VtuContent& content) {
