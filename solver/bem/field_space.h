@@ -58,7 +58,7 @@ struct GridCell {
   int level = 0;
   std::array<int, Dim - 1> index{};
 
-  friend auto operator<=>(const GridCell&, const GridCell&) = default;
+  friend auto operator<=>(const GridCell&, const GridCell&) = default;  // NOLINT(modernize-use-nullptr): takes its 0
 };
 
 /// A space of functions on a boundary and the points that go with them. Unknowns and known data of all equations live
