@@ -298,7 +298,7 @@ void add_analysis(const CaseFile& file, const Model<Dim>& model, const RunOption
   });
   report.integrals.insert(report.integrals.end(), analysis.integrals.begin(), analysis.integrals.end());
   report.warnings.insert(report.warnings.end(), analysis.report.messages.begin(), analysis.report.messages.end());
-  report.analysis = std::move(analysis.report);
+  report.analysis = analysis.report;
   report.fields = std::make_shared<const AnyAnalysis>(AnyAnalysis{std::move(analysis)});
 }
 
