@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "geometry/bezier/element_jet.h"
 #include "io/analysis/solution_cells.h"
 #include "io/atomic_file.h"
 #include "io/vtk/bezier_writer.h"
@@ -88,17 +91,40 @@ struct ElementFacets {
   std::vector<std::array<std::int64_t, 4>> facets;
 };
 
-/// Twice as many pieces in each direction as the fields' degree: what is left of a curve's bow is below what is seen.
+/// By how much the normal or a tangent turns over an element (a flat one may have curved edges), from some of its
+/// places; radians.
+template <int Dim>
+double turning(const geometry::ElementTable<Dim>& table, const geometry::BezierElement<Dim>& element) {
+  const auto directions_at = [&](double s, double t) {
+    geometry::Point<Dim - 1> place = geometry::Point<Dim - 1>::Constant(s);
+    if constexpr (Dim == 3) place[1] = t;
+    const geometry::ElementJet<Dim> jet = geometry::evaluate_jet(table, element, place);
+    Eigen::Matrix<double, Dim, Dim> directions;
+    directions << jet.normal(), jet.tangents.colwise().normalized();
+    return directions;
+  };
+  const Eigen::Matrix<double, Dim, Dim> middle = directions_at(0.5, 0.5);
+  double least = 1.0;
+  for (const double s : {0.1, 0.9}) {
+    for (const double t : {0.1, 0.9}) {
+      least = std::min(least, middle.cwiseProduct(directions_at(s, t)).colwise().sum().minCoeff());
+    }
+  }
+  return 2.0 * std::acos(std::clamp(least, -1.0, 1.0));
+}
+
+/// Twice as many pieces in each direction as the fields' degree, and one for every five degrees of turning.
 template <int Dim>
 int subdivisions(const solver::FieldSpace<Dim>& space, std::size_t element) {
   int degree = 1;
   for (const std::int8_t p : space.elements[element].degree) degree = std::max<int>(degree, p);
-  for (const std::int8_t p : space.table.elements[element].degree) degree = std::max<int>(degree, p);
-  return std::min(2 * degree, 12);
+  const double angle = turning(space.table, space.table.elements[element]);
+  const int pieces = static_cast<int>(std::ceil(angle * 36.0 / std::numbers::pi));
+  return std::clamp(std::max(2 * degree, pieces), 2, 24);
 }
 
 ElementFacets<2> facets_of(const solver::FieldSpace<2>& space, std::size_t element, double /*chord_tolerance*/) {
-  const int n = 2 * subdivisions(space, element);
+  const int n = subdivisions(space, element);
   ElementFacets<2> result;
   for (int i = 0; i <= n; ++i) result.places.push_back(geometry::Point<1>(static_cast<double>(i) / n));
   for (int i = 0; i < n; ++i) result.facets.push_back({i, i + 1, -1, -1});
