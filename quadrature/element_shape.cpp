@@ -74,7 +74,8 @@ Spectrum jacobian_spectrum(const ElementNet<Dim>& net, std::size_t direction, in
 template <int Dim>
 Growth jacobian_growth(const ElementNet<Dim>& net, std::size_t direction, double field_degree, double tolerance) {
   constexpr int most_points = 150;
-  const double negligible = 0.03 * tolerance;
+  constexpr double rounding = 1e-14;
+  const double negligible = std::max(0.03 * tolerance, rounding);
   int count = 4 * net.degree[direction] + 8;
   Spectrum spectrum = jacobian_spectrum(net, direction, count);
   while (!spectrum.is_resolved(negligible) && count < most_points) {

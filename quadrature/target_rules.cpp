@@ -122,6 +122,8 @@ struct TargetRules<Dim>::State {
   State(const geometry::ElementTable<Dim>& table, const Options& chosen)
       : options(chosen), elements(table.elements.size()) {
     constexpr std::size_t chunk = 16;
+    constexpr double least_tolerance = 1e-14;
+    options.tolerance = std::max(options.tolerance, least_tolerance);
     parallel_for((elements.size() + chunk - 1) / chunk, 0, [&](std::size_t task, int) {
       for (std::size_t e = task * chunk; e < std::min((task + 1) * chunk, elements.size()); ++e) {
         const geometry::BezierElement<Dim>& element = table.elements[e];

@@ -70,7 +70,7 @@ class TargetRules {
  public:
   struct Options {
     /// Relative accuracy of int K phi dS on each element for kernels up to |x - y|^(1 - Dim) (after the value at the
-    /// target has been subtracted on its own element) and phi of the field's degree.
+    /// target has been subtracted on its own element) and phi of the field's degree. Below 1e-14 counts as 1e-14.
     double tolerance = 1e-12;
     /// Degree of the functions on every element, beside the geometry's.
     int field_degree = 2;

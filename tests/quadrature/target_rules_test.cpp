@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -304,10 +305,29 @@ TEST(TargetRules, TinyDistancesDoNoHarm) {
         }
         EXPECT_LT(nodes.size(), 60000U) << words(name, target, distance);
         // A solid angle: no surface here is seen from both sides of a full one.
-        EXPECT_LE(std::abs(angle), 4.0 * M_PI) << words(name, target, distance);
+        EXPECT_LE(std::abs(angle), 4.0 * std::numbers::pi) << words(name, target, distance);
       }
     }
   }
+}
+
+// Rounding in the Jacobian is no detail of the element's shape.
+TEST(TargetRules, TightTolerancesStayAffordable) {
+  const ElementTable<3> table = geometry::bezier_elements(geometry::sphere(1.0));
+  const TargetRules<3> rules(table, {1e-16, 16});
+  NodeBuffer<3> buffer;
+  const Target<3> target{{0.2, -0.3, 0.1}};
+  double angle = 0.0;
+  for (int e = 0; e < static_cast<int>(table.elements.size()); ++e) {
+    const NodeView<3> nodes = rules.nodes(e, target, buffer);
+    EXPECT_LT(nodes.size(), 2000U);
+    for (std::size_t q = 0; q < nodes.size(); ++q) {
+      const Vector3 d = offset_of(nodes, target.position, q);
+      for (std::size_t c = 0; c < 3; ++c)
+        angle += nodes.weight[q] * d[static_cast<Eigen::Index>(c)] * nodes.normal[c][q] / std::pow(d.norm(), 3);
+    }
+  }
+  EXPECT_NEAR(angle, 4.0 * std::numbers::pi, 1e-13);
 }
 
 }  // namespace
