@@ -55,6 +55,9 @@ CurveJet<Number> curve_jet(const CellCurve& curve, Number s) {
   return jet;
 }
 
+/// Of the way to the region, where rays start about a pole that does not belong to it.
+constexpr double inner_share = 0.5;
+
 /// Where a weight function with this ratio of weights can vanish at the nearest: as that of a quadratic does (see
 /// expected_orders() of element_piece.h).
 Complex nearest_weight_zero(const CellCurve& curve) {
@@ -106,17 +109,56 @@ PolarRule::PolarRule(const NearRequest<3>& request, std::span<const CellCurve> c
       is_own_(is_own),
       distance_(is_own ? 0.0 : jet.offset.norm()),
       metric_(metric_of(*request.shape, jet)) {
-  constexpr double inner_share = 0.5;
+  // A pole no farther from the region than from the target is as good as one on it: what is summed in vain on rays
+  // from the pole itself is then no more than the integral.
   if (around == Around::hole) {
-    double least = std::numeric_limits<double>::max();
-    for (const CellCurve& curve : curves) {
-      const geometry::Vector2 ray =
-          curve_jet(curve, std::clamp(nearest_on_curve(curve).real(), 0.0, 1.0)).point - pole_;
-      least = std::min(least, metric_.product(ray, ray));
-    }
-    inner_radius_ = inner_share * std::sqrt(least);
+    const double clearance = clearance_from(curves);
+    if (clearance > distance_) inner_radius_ = inner_share * clearance;
   }
   for (const CellCurve& curve : curves) add_curve(curve, 0);
+}
+
+/// By bisection.
+double PolarRule::clearance_from(std::span<const CellCurve> curves) const {
+  constexpr double near_enough = 0.9;
+  constexpr int most_bisections = 40;
+  double attained = std::numeric_limits<double>::max();
+  double least = attained;
+  std::vector<std::pair<CellCurve, int>> left;
+  for (const CellCurve& curve : curves) left.emplace_back(curve, 0);
+  while (!left.empty()) {
+    const auto [curve, depth] = std::move(left.back());
+    left.pop_back();
+    const geometry::Vector2 start = curve.col(0).head<2>() / curve(2, 0) - pole_;
+    const double distance = std::sqrt(metric_.product(start, start));
+    attained = std::min(attained, distance);
+    const double bound = distance_bound(curve);
+    if (bound >= attained) continue;
+    if (bound >= near_enough * distance || depth == most_bisections) {
+      least = std::min(least, bound);
+      continue;
+    }
+    const auto halves = bisect(curve);
+    left.emplace_back(halves.first, depth + 1);
+    left.emplace_back(halves.second, depth + 1);
+  }
+  return std::min(least, attained);
+}
+
+/// A curve comes no nearer to the pole than its control points do in the direction in which they are seen.
+double PolarRule::distance_bound(const CellCurve& curve) const {
+  const geometry::Points<2> points = curve.topRows<2>().array().rowwise() / curve.row(2).array();
+  const geometry::Points<2> rays = points.colwise() - pole_;
+  geometry::Vector2 middle = geometry::Vector2::Zero();
+  for (Eigen::Index i = 0; i < rays.cols(); ++i) {
+    const double squared = metric_.product(rays.col(i), rays.col(i));
+    if (squared > 0.0) middle += rays.col(i) / std::sqrt(squared);
+  }
+  const double length = std::sqrt(metric_.product(middle, middle));
+  if (length == 0.0) return 0.0;
+  double least = std::numeric_limits<double>::max();
+  for (Eigen::Index i = 0; i < rays.cols(); ++i) least = std::min(least, metric_.product(rays.col(i), middle));
+  return std::max(least / length, 0.0);
 }
 
 PolarRule::Metric PolarRule::metric_of(const ElementShape<3>& shape, const ElementJet<3>& jet) {
@@ -292,7 +334,9 @@ PolarRule::Complex PolarRule::distant_singularity(const geometry::Vector2& ray) 
 PolarRule::Ray PolarRule::radial_map(const geometry::Vector2& ray) const {
   if (is_own_) return {0.0, {}};
   const Complex root = singularity(ray);
-  const double start = inner_radius_ > 0.0 ? inner_radius_ / std::sqrt(metric_.product(ray, ray)) : 0.0;
+  // No ray to the region is shorter than the nearest, but for rounding.
+  const double start =
+      inner_radius_ > 0.0 ? std::min(inner_radius_ / std::sqrt(metric_.product(ray, ray)), inner_share) : 0.0;
   if (start > 0.0) {
     const double scale = std::hypot(start, std::abs(root)) / (1.0 - start);
     return {start, scale < 1.5 ? SinhMap(-start / (1.0 - start), scale) : SinhMap()};

@@ -63,6 +63,9 @@ class PolarRule {
     int radial_points = 0;
   };
 
+  /// A bound from below of the distance from the pole to the curves, in the metric: at most a tenth too small.
+  double clearance_from(std::span<const CellCurve> curves) const;
+  double distance_bound(const CellCurve& curve) const;
   static Metric metric_of(const ElementShape<3>& shape, const ElementJet<3>& jet);
   void add_curve(const CellCurve& curve, int depth);
   /// The element at a point of a curve.

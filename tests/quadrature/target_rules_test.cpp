@@ -191,6 +191,20 @@ ElementTable<3> cut(ElementTable<3> table, geometry::TrimmedRegion region) {
   return table;
 }
 
+/// A place at so much of a curve, and so far to its left.
+Point2 beside_curve(const geometry::HomogeneousPoints<2>& curve, double at, double beside) {
+  const auto point = [&](double s) {
+    std::vector<Vector3> row;
+    for (Eigen::Index i = 0; i < curve.cols(); ++i) row.emplace_back(curve.col(i));
+    for (; row.size() > 1; row.pop_back())
+      for (std::size_t i = 0; i + 1 < row.size(); ++i) row[i] += s * (row[i + 1] - row[i]);
+    return Point2(row[0].head<2>() / row[0][2]);
+  };
+  constexpr double step = 1e-4;
+  const Point2 along = (point(at + step) - point(at - step)).normalized();
+  return point(at) + beside * Point2(-along[1], along[0]);
+}
+
 std::vector<std::pair<std::string, geometry::TrimmedRegion>> regions() {
   geometry::TrimmedRegion holed = testing::whole_cell();
   testing::add_circle(holed, {0.6, 0.45}, 0.3, 8, -1);
@@ -220,6 +234,29 @@ TEST(TargetRules, CutElementsAreIntegratedOverWhatIsKept) {
           expect_errors(errors(table, target, 1e-12),
                         {1e-11, 1e-11 + rounding, 1e-11 + rounding, 1e-10 + 10 * rounding},
                         words(name, target, distance));
+        }
+      }
+    }
+  }
+}
+
+// As the points of a round hole's wall are seen from the faces that it ends in: their feet lie on the trim, to
+// rounding.
+TEST(TargetRules, TargetsAboveATrimKeepTheTolerance) {
+  const auto elements = testing::surface_elements();
+  for (const std::size_t e : {0U, 3U}) {
+    for (const auto& [region_name, region] : regions()) {
+      const ElementTable<3> table = cut(elements[e].second, region);
+      for (const double beside : {0.0, 1e-16, -1e-16, 1e-9, -1e-9, 1e-3, -1e-3, 0.02, -0.02}) {
+        for (const double distance : {1e-4, 1e-2, 0.3}) {
+          for (const double at : {0.0, 0.37}) {
+            const geometry::HomogeneousPoints<2>& curve = region.curves[region.curves.size() / 3];
+            const Target<3> target = near_target(table, beside_curve(curve, at, beside), distance);
+            const double rounding = 1e-15 / distance;
+            expect_errors(
+                errors(table, target, 1e-12), {1e-11, 1e-11 + rounding, 1e-11 + rounding, 1e-10 + 10 * rounding},
+                words(elements[e].first + ", " + region_name + ", beside " + std::to_string(beside), target, distance));
+          }
         }
       }
     }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/intersection/clip.h"
 #include "geometry/shapes/regions.h"
 #include "geometry/shapes/solids.h"
 #include "solver/bem/solve.h"
@@ -91,6 +92,28 @@ TEST(PatchTest, LinearFieldsAreExactOnTorus) {
 
 TEST(PatchTest, LinearFieldsAreExactOnCylinder) {
   expect_patch_test<3>("cylinder", geometry::cylinder(1.0, 2.0), {{value, flux}, {flux, value, robin}});
+}
+
+// Feet of the collocation points on a round wall lie on the trims of the faces that it ends in.
+TEST(PatchTest, LinearFieldsAreExactOnDrilledBodies) {
+  using geometry::clip;
+  using geometry::CylinderTool;
+  const std::vector<Kinds> kinds{{value, flux}};
+  const auto outside = geometry::KeptSide::outside;
+  const geometry::Boundary<3> block = geometry::box({2.0, 2.0, 1.0});
+  const CylinderTool upright{{1.0, 0.9, 0.0}, {0.0, 0.0, 1.0}, 0.4, outside};
+  expect_patch_test<3>("drilled block", clip(block, upright), {{value}, {value, flux}});
+  expect_patch_test<3>("block drilled askew",
+                       clip(block, CylinderTool{{1.0, 0.9, 0.5}, {0.3, 0.2, 1.0}, 0.35, outside}), kinds);
+  expect_patch_test<3>("block drilled crosswise",
+                       clip(clip(block, upright), CylinderTool{{0.0, 1.1, 0.5}, {1.0, 0.0, 0.0}, 0.25, outside}),
+                       kinds);
+  expect_patch_test<3>("cylinder bored crosswise",
+                       clip(geometry::cylinder(1.0, 2.0), CylinderTool{{0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, 0.4, outside}),
+                       kinds);
+  expect_patch_test<3>("notched block", clip(block, geometry::SphereTool{{2.0, 2.0, 1.0}, 0.7, outside}), kinds);
+  expect_patch_test<3>("block drilled through two faces",
+                       clip(block, CylinderTool{{0.5, 0.5, 0.0}, {0.0, 0.0, 1.0}, 0.5, outside}), {{value}});
 }
 
 }  // namespace
