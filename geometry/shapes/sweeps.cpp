@@ -87,10 +87,12 @@ NurbsCurve<Dim> on_knots(const NurbsCurve<Dim>& curve, const std::vector<Knot>& 
 }
 
 /// Parameters of the sections: chord lengths, each control point's total scaled to 1, averaged over the control points.
-std::vector<double> section_parameters(std::span<const NurbsCurve<3>> sections) {
-  const std::size_t count = sections.size();
+/// If closed, one more for the first section at the end of the period.
+std::vector<double> section_parameters(std::span<const NurbsCurve<3>> sections, bool closed) {
   std::vector<Points<3>> points;
   for (const NurbsCurve<3>& section : sections) points.push_back(section.control_points());
+  if (closed) points.push_back(points.front());
+  const std::size_t count = points.size();
   std::vector<double> steps(count, 0.0);
   for (Eigen::Index i = 0; i < points[0].cols(); ++i) {
     double total = 0.0;
@@ -100,7 +102,9 @@ std::vector<double> section_parameters(std::span<const NurbsCurve<3>> sections) 
   }
   std::vector<double> parameters(count, 0.0);
   for (std::size_t k = 1; k < count; ++k) {
-    if (steps[k] == 0.0) throw GeometryError(fmt::format("loft: sections {} and {} coincide", k - 1, k));
+    if (steps[k] == 0.0) {
+      throw GeometryError(fmt::format("loft: sections {} and {} coincide", k - 1, k % sections.size()));
+    }
     parameters[k] = parameters[k - 1] + steps[k];
   }
   for (double& v : parameters) v /= parameters.back();
@@ -119,6 +123,16 @@ KnotVector averaged_knots(int degree, std::span<const double> parameters) {
   }
   knots.insert(knots.end(), p + 1, 1.0);
   return {degree, std::move(knots)};
+}
+
+/// Knots at the parameters: for odd degrees the periodic interpolation there is well posed.
+KnotVector periodic_knots(int degree, std::span<const double> parameters) {
+  const std::size_t sections = parameters.size() - 1;
+  if (degree % 2 == 0 || static_cast<std::size_t>(degree) > sections) {
+    throw GeometryError(fmt::format(
+        "loft: degree is {}; closed lofts need an odd one, at most the number of sections, {}", degree, sections));
+  }
+  return KnotVector::periodic(degree, parameters);
 }
 
 /// Row k holds the values of the basis functions at parameters[k].
@@ -225,18 +239,28 @@ NurbsSurface<3> loft(std::span<const NurbsCurve<3>> sections, const LoftOptions&
   }
   if (options.degree < 1) throw GeometryError(fmt::format("loft: degree is {}, it must be positive", options.degree));
   const std::vector<NurbsCurve<3>> lines = make_compatible(sections);
-  const std::vector<double> parameters = section_parameters(lines);
-  const KnotVector across = averaged_knots(std::min(options.degree, static_cast<int>(sections.size()) - 1), parameters);
+  const std::vector<double> parameters = section_parameters(lines, options.closed);
+  const KnotVector across =
+      options.closed ? periodic_knots(options.degree, parameters)
+                     : averaged_knots(std::min(options.degree, static_cast<int>(sections.size()) - 1), parameters);
 
+  const auto count = static_cast<Eigen::Index>(lines.size());
   const Eigen::Index width = lines[0].homogeneous().size();
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(lines.size()), width);
+  Eigen::MatrixXd rows(count, width);
   for (std::size_t k = 0; k < lines.size(); ++k) {
     rows.row(static_cast<Eigen::Index>(k)) =
         Eigen::Map<const Eigen::VectorXd>(lines[k].homogeneous().data(), width).transpose();
   }
-  const Eigen::MatrixXd net = collocation_matrix(across, parameters).partialPivLu().solve(rows);
+  Eigen::MatrixXd matrix = collocation_matrix(across, std::span(parameters).first(lines.size()));
+  // The last functions of a periodic spline are its first ones.
+  const Eigen::Index repeated = matrix.cols() - count;
+  for (Eigen::Index j = 0; j < repeated; ++j) matrix.col(j) += matrix.col(count + j);
+  Eigen::MatrixXd net(count + repeated, width);
+  net.topRows(count) = matrix.leftCols(count).partialPivLu().solve(rows);
+  net.bottomRows(repeated) = net.topRows(repeated).eval();
   try {
-    return surface_of_rows(lines[0].knots(), across, net);
+    const NurbsSurface<3> surface = surface_of_rows(lines[0].knots(), across, net);
+    return options.closed ? clamp(surface) : surface;
   } catch (GeometryError& error) {
     error.add_context("loft: interpolation through sections with different weights");
     throw;

@@ -44,6 +44,9 @@ NurbsSurface<3> ruled(const NurbsCurve<3>& first, const NurbsCurve<3>& second);
 struct LoftOptions {
   /// Degree across the sections, at least 1; lowered to the number of sections minus one. 3 gives continuous curvature.
   int degree = 3;
+  /// The last section is followed by the first. v is periodic then, knots lie at the parameters of the sections, and
+  /// the degree must be odd and at most the number of sections; it is not lowered. The surface comes back clamped.
+  bool closed = false;
 };
 
 /// The surface through the sections, u along them, v across (skinning: Piegl & Tiller, section 10.3): the sections are

@@ -216,11 +216,32 @@ Frame plane_of(const NurbsCurve<3>& section, const char* which) {
   return {origin, first, normal.cross(first)};
 }
 
-void append_loft_cap(const std::string& name, const NurbsCurve<3>& section, const char* which, Boundary<3>& solid) {
+bool is_point(const NurbsCurve<3>& section) {
   const Points<3> points = section.control_points();
-  if ((points.colwise() - points.col(0)).isZero(0.0)) return;
-  const Frame frame = plane_of(section, which);
-  append_cap(name, fill({{{name, project(section, frame)}}}), frame, CapSide::along_normal, solid);
+  return (points.colwise() - points.col(0)).isZero(0.0);
+}
+
+/// The end of each wall: `first` or last.
+void append_loft_cap(const std::string& name, std::span<const std::vector<NurbsCurve<3>>> walls, bool first,
+                     Boundary<3>& solid) {
+  const char* which = first ? "first" : "last";
+  std::vector<NurbsCurve<3>> loops;
+  for (const std::vector<NurbsCurve<3>>& wall : walls) {
+    const NurbsCurve<3>& loop = first ? wall.front() : wall.back();
+    if (!is_point(loop)) loops.push_back(loop);
+  }
+  if (loops.empty()) return;
+  const Frame frame = plane_of(loops.front(), which);
+  const double size = extent(loops, frame.origin);
+  if (!lies_in_plane(loops, frame, plane_tolerance * size)) {
+    throw GeometryError(fmt::format("loft: the loops of the {} section do not lie in one plane", which));
+  }
+  Boundary<2> region;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    region.patches.push_back(
+        {loops.size() == 1 ? name : fmt::format("{}, loop {}", name, i + 1), project(loops[i], frame)});
+  }
+  append_cap(name, fill(region), frame, CapSide::along_normal, solid);
 }
 
 }  // namespace
@@ -291,9 +312,25 @@ Boundary<3> revolve(const Boundary<2>& region, const Axis& axis, double angle) {
 }
 
 Boundary<3> loft_solid(std::span<const NurbsCurve<3>> sections, const LoftOptions& options) {
-  Boundary<3> solid{{{"side", loft(sections, options)}}};
-  append_loft_cap("start_cap", sections.front(), "first", solid);
-  append_loft_cap("end_cap", sections.back(), "last", solid);
+  const std::vector<NurbsCurve<3>> wall(sections.begin(), sections.end());
+  return loft_solid(std::span<const std::vector<NurbsCurve<3>>>(&wall, 1), options);
+}
+
+Boundary<3> loft_solid(std::span<const std::vector<NurbsCurve<3>>> walls, const LoftOptions& options) {
+  if (walls.empty()) throw GeometryError("loft: there are no sections");
+  Boundary<3> solid;
+  for (const std::vector<NurbsCurve<3>>& wall : walls) {
+    if (wall.size() != walls.front().size()) {
+      throw GeometryError(
+          fmt::format("loft: walls through {} and {} sections; expected the same", walls.front().size(), wall.size()));
+    }
+    const std::size_t number = solid.patches.size() + 1;
+    solid.patches.push_back({walls.size() == 1 ? "side" : fmt::format("side_{}", number), loft(wall, options)});
+  }
+  if (!options.closed) {
+    append_loft_cap("start_cap", walls, true, solid);
+    append_loft_cap("end_cap", walls, false, solid);
+  }
   OrientedBoundary<3> oriented = orient(solid);
   require_closed(oriented);
   for (Patch<3>& patch : oriented.boundary.patches) {

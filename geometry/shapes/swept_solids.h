@@ -40,4 +40,8 @@ void require_simple_profile(std::span<const NurbsCurve<3>> curves, const Axis& a
 /// single point needs none. A first or last section that is not plane is refused.
 Boundary<3> loft_solid(std::span<const NurbsCurve<3>> sections, const LoftOptions& options = {});
 
+/// The same for sections of several loops: a list of sections for each wall, all of the same length. Walls are named
+/// "side", or "side_1", "side_2", ...; caps have the holes that the loops make. A closed loft has no caps.
+Boundary<3> loft_solid(std::span<const std::vector<NurbsCurve<3>>> walls, const LoftOptions& options = {});
+
 }  // namespace isorim::geometry
