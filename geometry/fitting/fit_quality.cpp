@@ -1,0 +1,179 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "geometry/errors.h"
+#include "geometry/fitting/curve_fit.h"
+#include "geometry/fitting/curve_shape.h"
+#include "geometry/fitting/foot_points.h"
+#include "geometry/intersection/bernstein_polynomial.h"
+
+namespace isorim::geometry {
+
+namespace {
+
+/// The nodes of the Gauss-Kronrod pair of 7 and 15 points on [-1, 1]; Gauss weight 0 where the 7-point rule has none.
+struct KronrodNode {
+  double node;
+  double kronrod;
+  double gauss;
+};
+
+constexpr std::array<KronrodNode, 15> kronrod_nodes = [] {
+  constexpr std::array<KronrodNode, 8> half{{
+      {0.0, 0.20948214108472782801, 0.41795918367346938776},
+      {0.2077849550078984676, 0.20443294007529889241, 0.0},
+      {0.40584515137739716691, 0.19035057806478540991, 0.38183005050511894495},
+      {0.58608723546769113029, 0.16900472663926790283, 0.0},
+      {0.74153118559939443986, 0.14065325971552591875, 0.2797053914892766679},
+      {0.86486442335976907279, 0.10479001032225018384, 0.0},
+      {0.94910791234275852453, 0.063092092629978553291, 0.12948496616886969327},
+      {0.99145537112081263921, 0.022935322010529224964, 0.0},
+  }};
+  std::array<KronrodNode, 15> nodes{};
+  for (std::size_t i = 0; i < 8; ++i) {
+    nodes[7 + i] = half[i];
+    nodes[7 - i] = {-half[i].node, half[i].kronrod, half[i].gauss};
+  }
+  return nodes;
+}();
+
+/// Length and integral of the squared curvature over a part of a curve, and the error of the latter.
+struct Bending {
+  double length = 0.0;
+  double squared_curvature = 0.0;
+  double error = 0.0;
+};
+
+template <int Dim>
+Bending bending(const SegmentedCurve<Dim>& curve, Interval part) {
+  Bending sum;
+  double gauss = 0.0;
+  const double half = 0.5 * part.length();
+  for (const KronrodNode& rule : kronrod_nodes) {
+    const CurveJet<Dim> jet = curve.jet(part.middle() + half * rule.node);
+    const double metric = jet.du.squaredNorm();
+    if (!(metric > 0.0)) continue;
+    const double speed = std::sqrt(metric);
+    const double along = jet.du.dot(jet.duu);
+    const double bent = std::max(0.0, jet.duu.squaredNorm() - along * along / metric) / (metric * speed);
+    sum.length += half * rule.kronrod * speed;
+    sum.squared_curvature += half * rule.kronrod * bent;
+    gauss += half * rule.gauss * bent;
+  }
+  sum.error = std::abs(sum.squared_curvature - gauss);
+  return sum;
+}
+
+template <int Dim>
+Bending adaptive_bending(const SegmentedCurve<Dim>& curve, Interval part, int depth) {
+  constexpr double tolerance = 1e-6;
+  const Bending whole = bending(curve, part);
+  if (depth == 0 || whole.error <= tolerance * whole.squared_curvature) return whole;
+  const Bending left = adaptive_bending(curve, {part.first, part.middle()}, depth - 1);
+  const Bending right = adaptive_bending(curve, {part.middle(), part.last}, depth - 1);
+  return {left.length + right.length, left.squared_curvature + right.squared_curvature, left.error + right.error};
+}
+
+/// C' x C'' on a segment, in Bernstein form and without a positive factor; empty for polygons.
+BernsteinCoefficients curvature_numerator(const Points<2>& points) {
+  const Eigen::Index p = points.cols() - 1;
+  if (p < 2) return {};
+  const Points<2> first = points.rightCols(p) - points.leftCols(p);
+  const Points<2> second = first.rightCols(p - 1) - first.leftCols(p - 1);
+  const Points<2> turned = (Eigen::Matrix2d() << 0, 1, -1, 0).finished() * second;
+  return multiply(first.row(0).transpose(), turned.row(0).transpose()) +
+         multiply(first.row(1).transpose(), turned.row(1).transpose());
+}
+
+/// The signs along the segment, in order.
+void append_signs(const BernsteinCoefficients& numerator, double noise, std::vector<int>& signs) {
+  if (numerator.size() == 0) return;
+  if (numerator.minCoeff() > noise || numerator.maxCoeff() < -noise) {
+    signs.push_back(numerator[0] > 0.0 ? 1 : -1);
+    return;
+  }
+  const SignChart chart = sign_chart(numerator, noise);
+  signs.insert(signs.end(), chart.signs.begin(), chart.signs.end());
+}
+
+}  // namespace
+
+template <int Dim>
+double bending_energy(const SegmentedCurve<Dim>& curve) {
+  constexpr int deepest = 12;
+  Bending sum;
+  for (int i = 0; i < curve.segment_count(); ++i) {
+    const Bending part = adaptive_bending(curve, curve.segment_domain(i), deepest);
+    sum.length += part.length;
+    sum.squared_curvature += part.squared_curvature;
+  }
+  return sum.length * sum.squared_curvature;
+}
+
+int curvature_sign_changes(const SegmentedCurve<2>& curve, bool closed) {
+  constexpr double rounding = 1e-12;
+  std::vector<int> signs;
+  for (int i = 0; i < curve.segment_count(); ++i) {
+    const Points<2> points = curve.segment_points(i);
+    const double size =
+        (points.rightCols(points.cols() - 1) - points.leftCols(points.cols() - 1)).cwiseAbs().maxCoeff();
+    append_signs(curvature_numerator(points), rounding * size * size, signs);
+  }
+  std::erase(signs, 0);
+  int changes = 0;
+  for (std::size_t i = 1; i < signs.size(); ++i) changes += signs[i] != signs[i - 1] ? 1 : 0;
+  if (closed && !signs.empty() && signs.front() != signs.back()) ++changes;
+  return changes;
+}
+
+template <int Dim>
+FitQuality<Dim> shape_quality(const SegmentedCurve<Dim>& curve, bool closed) {
+  FitQuality<Dim> quality;
+  quality.bending_energy = bending_energy(curve);
+  if constexpr (Dim == 2) quality.curvature_sign_changes = curvature_sign_changes(curve, closed);
+  return quality;
+}
+
+template <int Dim>
+void add_distances(std::span<const double> distances, FitQuality<Dim>& quality) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    sum += distances[i] * distances[i];
+    if (distances[i] <= quality.max_distance) continue;
+    quality.max_distance = distances[i];
+    quality.worst_point = static_cast<int>(i);
+  }
+  quality.rms_distance = distances.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(distances.size()));
+}
+
+template <int Dim>
+FitQuality<Dim> fit_quality(const NurbsCurve<Dim>& curve, const Points<Dim>& points, bool closed) {
+  if (!curve.is_polynomial()) throw GeometryError("fit quality: the curve is rational; expected a polynomial B-spline");
+  const SegmentedCurve<Dim> segments(curve.knots(), curve.control_points(), closed);
+  std::vector<double> distances(static_cast<std::size_t>(points.cols()));
+  double guess = curve.domain().first;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const ClosestCurvePoint<Dim> nearest = segments.nearest(points.col(i), guess);
+    distances[static_cast<std::size_t>(i)] = nearest.distance;
+    guess = nearest.u;
+  }
+  FitQuality<Dim> quality = shape_quality(segments, closed);
+  add_distances(distances, quality);
+  return quality;
+}
+
+template double bending_energy(const SegmentedCurve<2>&);
+template double bending_energy(const SegmentedCurve<3>&);
+template FitQuality<2> shape_quality(const SegmentedCurve<2>&, bool);
+template FitQuality<3> shape_quality(const SegmentedCurve<3>&, bool);
+template void add_distances(std::span<const double>, FitQuality<2>&);
+template void add_distances(std::span<const double>, FitQuality<3>&);
+template FitQuality<2> fit_quality(const NurbsCurve<2>&, const Points<2>&, bool);
+template FitQuality<3> fit_quality(const NurbsCurve<3>&, const Points<3>&, bool);
+
+}  // namespace isorim::geometry
