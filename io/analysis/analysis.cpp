@@ -1,22 +1,18 @@
 #include "io/analysis/analysis.h"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 
 #include "geometry/errors.h"
+#include "io/analysis/adaptive_analysis.h"
 #include "io/analysis/boundary_integrals.h"
-#include "io/analysis/points.h"
+#include "io/analysis/sampling.h"
 #include "io/analysis/solution_errors.h"
 #include "io/case/analysis_checks.h"
-#include "solver/bem/evaluation.h"
-#include "solver/bem/stress.h"
 
 namespace isorim::io {
 namespace {
@@ -61,74 +57,16 @@ solver::SolveOptions solve_options(const CaseFile& file, const RunOptions& run) 
   return options;
 }
 
-/// xx, yy, zz, xy[, yz, xz]: in the plane the last two vanish.
-template <int Dim>
-Eigen::VectorXd stress_entries(const Eigen::Matrix3d& s) {
-  if constexpr (Dim == 2) return Eigen::Vector4d(s(0, 0), s(1, 1), s(2, 2), s(0, 1));
-  Eigen::VectorXd entries(6);
-  entries << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2);
-  return entries;
-}
-
-template <int Dim>
-void store(const solver::PointEvaluation<Dim>& found, Eigen::Index i, FieldSamples& samples) {
-  samples.location[static_cast<std::size_t>(i)] = found.location == solver::Location::inside        ? 1
-                                                  : found.location == solver::Location::on_boundary ? 0
-                                                                                                    : -1;
-  if (found.location == solver::Location::outside) return;
-  samples.value.col(i) = found.field.value;
-  const Eigen::Index components = found.field.gradient.rows();
-  for (Eigen::Index c = 0; c < components; ++c) {
-    samples.gradient.col(i).segment(c * Dim, Dim) = found.field.gradient.row(c).transpose();
-  }
-  if (!samples.is_elastic()) return;
-  const Eigen::Matrix3d stress = full_stress(found.field);
-  samples.stress.col(i) = stress_entries<Dim>(stress);
-  samples.von_mises[i] = solver::von_mises(stress);
-  samples.principal.col(i) = solver::principal_stresses(stress).reverse();
-}
-
-template <int Dim>
-FieldSamples sample_points(const Analysis<Dim>& analysis, std::string name, const Eigen::MatrixXd& points,
-                           int threads) {
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  const Eigen::Index count = points.cols();
-  const int components = analysis.report.components;
-  const Eigen::Index stress_rows = analysis.report.equation == "elasticity" ? (Dim == 2 ? 4 : 6) : 0;
-  FieldSamples samples;
-  samples.name = std::move(name);
-  samples.points = points;
-  samples.location.resize(static_cast<std::size_t>(count));
-  samples.value = Eigen::MatrixXd::Constant(components, count, none);
-  samples.gradient = Eigen::MatrixXd::Constant(Eigen::Index{components} * Dim, count, none);
-  samples.stress = Eigen::MatrixXd::Constant(stress_rows, count, none);
-  if (stress_rows > 0) {
-    samples.von_mises = Eigen::VectorXd::Constant(count, none);
-    samples.principal = Eigen::MatrixXd::Constant(3, count, none);
-  }
-  const geometry::Points<Dim> places = points;
-  const std::vector<solver::PointEvaluation<Dim>> found = solver::evaluate_at<Dim>(
-      analysis.setting.problem, analysis.setting.space, analysis.solution, places, {.threads = threads});
-  for (Eigen::Index i = 0; i < count; ++i) store(found[static_cast<std::size_t>(i)], i, samples);
-  return samples;
-}
-
 template <int Dim>
 void evaluate_points(const CaseFile& file, const RunOptions& run, Analysis<Dim>& analysis) {
-  for (const ProbeKeys& keys : file.keys.probe) {
-    const Eigen::MatrixXd points = probe_points(keys, Dim, file.path.parent_path());
-    analysis.report.probes.push_back(sample_points(analysis, keys.name, points, run.threads));
-    FieldSamples& samples = analysis.report.probes.back();
-    samples.is_line = keys.from.has_value();
-    if (const std::size_t outside = samples.outside_count(); outside > 0) {
-      analysis.report.messages.push_back(fmt::format("probe \"{}\": {} of {} points lie outside the domain", keys.name,
-                                                     outside, samples.points.cols()));
-    }
-  }
-  for (const GridKeys& keys : file.keys.grid) {
-    const ImageShape shape = grid_shape(keys, Dim);
-    analysis.report.grids.push_back(sample_points(analysis, keys.name, grid_points(shape, Dim), run.threads));
-    analysis.report.grids.back().image = shape;
+  AnalysisReport& report = analysis.report;
+  report.probes = sample_probes(file, analysis.setting, analysis.solution, run.threads);
+  report.grids = sample_grids(file, analysis.setting, analysis.solution, run.threads);
+  for (const FieldSamples& samples : report.probes) {
+    const std::size_t outside = samples.outside_count();
+    if (outside == 0) continue;
+    report.messages.push_back(fmt::format("probe \"{}\": {} of {} points lie outside the domain", samples.name, outside,
+                                          samples.points.cols()));
   }
 }
 
@@ -168,17 +106,19 @@ Quantity point_quantity(std::string name, const Eigen::MatrixXd& columns) {
 
 }  // namespace
 
-std::size_t FieldSamples::outside_count() const {
-  return static_cast<std::size_t>(std::count(location.begin(), location.end(), static_cast<signed char>(-1)));
-}
-
 template <int Dim>
 Analysis<Dim> analyse(const CaseFile& file, const geometry::OrientedBoundary<Dim>& boundary, const RunOptions& run) {
   Analysis<Dim> analysis;
   const Clock::time_point start = Clock::now();
-  analysis.setting = boundary_value_problem(file, boundary);
-  const Clock::time_point discretised = Clock::now();
-  analysis.solution = solver::solve(analysis.setting.problem, analysis.setting.space, solve_options(file, run));
+  Clock::time_point discretised = start;
+  if (adapt_keys(file.keys)) {
+    solve_with_refinement(file, boundary, run, solve_options(file, run), analysis);
+  } else {
+    const ProblemStatement<Dim> statement(file, boundary);
+    analysis.setting = statement.on(solver::field_space(boundary, statement.discretisation()));
+    discretised = Clock::now();
+    analysis.solution = solver::solve(analysis.setting.problem, analysis.setting.space, solve_options(file, run));
+  }
   const Clock::time_point solved = Clock::now();
   describe_solution(file, analysis);
   evaluate_points(file, run, analysis);
@@ -201,6 +141,10 @@ std::vector<Quantity> expected_quantities(const AnalysisReport& report) {
   add("residual", report.residual);
   add("matrix_memory", static_cast<double>(report.matrix_memory));
   if (report.balance) add("balance", *report.balance);
+  if (report.adaptive) {
+    add("steps", static_cast<double>(report.adaptive->steps.size()));
+    add("estimate", report.adaptive->steps.back().estimate);
+  }
   for (const auto& [name, value] : report.errors) add(name, value);
   for (const FieldSamples& probe : report.probes) {
     list.push_back(point_quantity(probe.name + ".value", probe.value));

@@ -173,7 +173,7 @@ Frame<3> frame_about(const geometry::Vector3& normal) {
   return frame;
 }
 
-/// The middle of an element's cell, which decides for field_space() as well.
+/// The middle of an element's cell.
 template <int Dim>
 geometry::ElementJet<Dim> middle_of(const geometry::ElementTable<Dim>& table,
                                     const geometry::BezierElement<Dim>& element) {
@@ -216,12 +216,10 @@ geometry::Vector<Dim> flat_normal(const geometry::ElementTable<Dim>& table, cons
 template <int Dim>
 class ProblemBuilder {
  public:
-  ProblemBuilder(const CaseFile& file, const geometry::OrientedBoundary<Dim>& boundary)
-      : file_(file), boundary_(boundary.boundary), selector_(file, boundary.boundary) {
-    const auto group = [this](int patch, const geometry::Point<Dim>& point, const geometry::Vector<Dim>& normal) {
-      return selector_.select(patch, point, normal);
-    };
-    result_.space = solver::field_space(boundary, discretisation_options<Dim>(file, group));
+  ProblemBuilder(const CaseFile& file, const geometry::OrientedBoundary<Dim>& boundary,
+                 ConditionSelector<Dim>& selector, solver::FieldSpace<Dim> space)
+      : file_(file), boundary_(boundary.boundary), selector_(selector) {
+    result_.space = std::move(space);
   }
 
   BoundaryValueProblem<Dim> build() {
@@ -245,15 +243,14 @@ class ProblemBuilder {
     const auto& elements = result_.space.table.elements;
     std::map<std::string, int> uncovered;
     std::vector<char> used(file_.keys.boundary_condition.size(), 0);
-    for (const geometry::BezierElement<Dim>& element : elements) {
-      const geometry::ElementJet<Dim> middle = middle_of(result_.space.table, element);
-      const int condition = selector_.select(element.patch, middle.position, middle.normal());
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      const int condition = result_.space.groups[e];
       if (condition < 0) {
-        ++uncovered[boundary_.patches[static_cast<std::size_t>(element.patch)].name];
+        ++uncovered[boundary_.patches[static_cast<std::size_t>(elements[e].patch)].name];
         continue;
       }
       used[static_cast<std::size_t>(condition)] = 1;
-      result_.problem.condition_of.push_back(solver_condition(condition, element));
+      result_.problem.condition_of.push_back(solver_condition(condition, elements[e]));
     }
     refuse_uncovered(uncovered);
     refuse_unused(used);
@@ -327,19 +324,27 @@ class ProblemBuilder {
 
   const CaseFile& file_;
   const geometry::Boundary<Dim>& boundary_;
-  ConditionSelector<Dim> selector_;
+  ConditionSelector<Dim>& selector_;
   BoundaryValueProblem<Dim> result_;
 };
 
 }  // namespace
 
 template <int Dim>
-solver::DiscretisationOptions<Dim> discretisation_options(
-    const CaseFile& file, std::function<int(int, const geometry::Point<Dim>&, const geometry::Vector<Dim>&)> group) {
+ProblemStatement<Dim>::ProblemStatement(const CaseFile& file, const geometry::OrientedBoundary<Dim>& boundary)
+    : file_(&file), boundary_(&boundary), selector_(std::make_shared<ConditionSelector<Dim>>(file, boundary.boundary)) {
+  geometry::require_closed(boundary);
+}
+
+template <int Dim>
+solver::DiscretisationOptions<Dim> ProblemStatement<Dim>::discretisation() const {
   solver::DiscretisationOptions<Dim> options;
-  options.group = std::move(group);
-  if (!file.keys.discretisation) return options;
-  const DiscretisationKeys& keys = *file.keys.discretisation;
+  options.group = [selector = selector_](int patch, const geometry::Point<Dim>& point,
+                                         const geometry::Vector<Dim>& normal) {
+    return selector->select(patch, point, normal);
+  };
+  if (!file_->keys.discretisation) return options;
+  const DiscretisationKeys& keys = *file_->keys.discretisation;
   options.degree = keys.degree;
   options.refine = keys.refine;
   for (const PatchDiscretisationKeys& patch : keys.patch) {
@@ -351,13 +356,11 @@ solver::DiscretisationOptions<Dim> discretisation_options(
 }
 
 template <int Dim>
-BoundaryValueProblem<Dim> boundary_value_problem(const CaseFile& file,
-                                                 const geometry::OrientedBoundary<Dim>& boundary) {
-  geometry::require_closed(boundary);
-  return ProblemBuilder<Dim>(file, boundary).build();
+BoundaryValueProblem<Dim> ProblemStatement<Dim>::on(solver::FieldSpace<Dim> space) const {
+  return ProblemBuilder<Dim>(*file_, *boundary_, *selector_, std::move(space)).build();
 }
 
-template BoundaryValueProblem<2> boundary_value_problem(const CaseFile&, const geometry::OrientedBoundary<2>&);
-template BoundaryValueProblem<3> boundary_value_problem(const CaseFile&, const geometry::OrientedBoundary<3>&);
+template class ProblemStatement<2>;
+template class ProblemStatement<3>;
 
 }  // namespace isorim::io

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,11 +42,6 @@ class ConditionSelector {
   std::vector<Candidate> candidates_;
 };
 
-/// Degree, bisections and what the conditions require of the space.
-template <int Dim>
-solver::DiscretisationOptions<Dim> discretisation_options(
-    const CaseFile& file, std::function<int(int, const geometry::Point<Dim>&, const geometry::Vector<Dim>&)> group);
-
 template <int Dim>
 struct BoundaryValueProblem {
   solver::FieldSpace<Dim> space;
@@ -57,10 +52,25 @@ struct BoundaryValueProblem {
   std::vector<std::string> warnings;
 };
 
-/// Builds the space and the problem on it. Throws InputError, naming the patches, for parts of the boundary without a
-/// condition; for conditions that meet, or select nothing; for a component along the normal where the boundary is not
-/// flat; and as the solver does.
+/// What a case says of its boundary, for any space on it. The arguments of the constructor must outlive the object.
 template <int Dim>
-BoundaryValueProblem<Dim> boundary_value_problem(const CaseFile& file, const geometry::OrientedBoundary<Dim>& boundary);
+class ProblemStatement {
+ public:
+  /// Throws GeometryError for a boundary that is not closed.
+  ProblemStatement(const CaseFile& file, const geometry::OrientedBoundary<Dim>& boundary);
+
+  /// Degree, bisections and where conditions keep functions apart: elements of a space have the index of the case's
+  /// condition as group.
+  solver::DiscretisationOptions<Dim> discretisation() const;
+  /// The problem on a space of that discretisation, refined further or not. Throws InputError, naming the patches, for
+  /// parts of the boundary without a condition; for conditions that meet, or select nothing; for a component along the
+  /// normal where the boundary is not flat; and as the solver does.
+  BoundaryValueProblem<Dim> on(solver::FieldSpace<Dim> space) const;
+
+ private:
+  const CaseFile* file_;
+  const geometry::OrientedBoundary<Dim>* boundary_;
+  std::shared_ptr<ConditionSelector<Dim>> selector_;
+};
 
 }  // namespace isorim::io

@@ -34,7 +34,7 @@ class AnalysisChecker {
     check_material();
     check_loads();
     check_conditions();
-    check_patch_discretisations();
+    check_discretisation();
     check_points();
     check_exact();
     check_names();
@@ -239,9 +239,16 @@ class AnalysisChecker {
            "value, flux, displacement or traction");
   }
 
-  void check_patch_discretisations() {
+  void check_discretisation() {
     if (!keys_.discretisation) return;
     for (const PatchDiscretisationKeys& patch : keys_.discretisation->patch) check_on(patch.on, patch.where, false);
+    const AdaptKeys* adapt = adapt_keys(keys_);
+    const double solved = keys_.solve.value_or(SolveKeys{}).tolerance;
+    if (adapt && adapt->tolerance < solved) {
+      complain(adapt->where, fmt::format("found the tolerance {:g}, which is below that of [solve], {:g}; expected it "
+                                         "no lower",
+                                         adapt->tolerance, solved));
+    }
   }
 
   void check_points() {
@@ -363,6 +370,11 @@ void append_errors(const CaseKeys& keys, std::vector<AnalysisQuantity>& list) {
 
 }  // namespace
 
+const AdaptKeys* adapt_keys(const CaseKeys& keys) {
+  if (!keys.discretisation || !keys.discretisation->adapt.keys) return nullptr;
+  return &*keys.discretisation->adapt.keys;
+}
+
 int component_count(const CaseKeys& keys, int dim) {
   return is_elastic(keys) ? dim : 1;
 }
@@ -417,6 +429,9 @@ std::vector<AnalysisQuantity> analysis_quantities(const CaseKeys& keys, int dim)
   if (!keys.analysis) return list;
   const bool elastic = is_elastic(keys);
   for (const char* name : {"unknowns", "iterations", "residual", "balance", "matrix_memory"}) list.push_back({name});
+  if (adapt_keys(keys)) {
+    for (const char* name : {"steps", "estimate"}) list.push_back({name});
+  }
   append_errors(keys, list);
   for (const ProbeKeys& probe : keys.probe) {
     const int rows = probe.points.empty() ? -1 : static_cast<int>(probe.points.size());

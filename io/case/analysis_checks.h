@@ -13,6 +13,9 @@ namespace isorim::io {
 /// 1 for a potential, `dim` for a displacement.
 int component_count(const CaseKeys& keys, int dim);
 
+/// The section's key "adapt", if it asks for refinement; else null.
+const AdaptKeys* adapt_keys(const CaseKeys& keys);
+
 /// What results call condition `index`: its name, else the patch that it is for or "all", else "condition_N" (N from
 /// 1).
 std::string condition_name(const CaseKeys& keys, std::size_t index);

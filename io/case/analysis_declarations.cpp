@@ -313,6 +313,38 @@ const Schema<PatchDiscretisationKeys>& schema<PatchDiscretisationKeys>() {
 }
 
 template <>
+const Schema<AdaptKeys>& schema<AdaptKeys>() {
+  static const auto declared =
+      Schema<AdaptKeys>("adapt",
+                        "Solves, estimates the error of each element, bisects those where it is largest, and "
+                        "begins again.")
+          .key("tolerance", &AdaptKeys::tolerance,
+               {.text = "Ends when the estimate of the relative error is no larger.", .range = open_fraction})
+          .key("max_unknowns", &AdaptKeys::max_unknowns,
+               {.text = "Larger systems are not solved, but for the first one.", .range = Range::between(1, 1000000)})
+          .key("max_steps", &AdaptKeys::max_steps,
+               {.text = "Systems to solve at most.", .range = Range::between(1, 1000)})
+          .key("fraction", &AdaptKeys::fraction,
+               {.text = "The elements that are bisected are the fewest with this share of the squared error.",
+                .range = {.least = 0, .most = 1, .least_is_open = true}});
+  return declared;
+}
+
+bool KeyType<AdaptEntry>::read(const Value& v, AdaptEntry& t, const Range&, const KeyPlace& w, Complaints& c) {
+  if (const bool* wanted = v.as<bool>()) {
+    if (*wanted) t.keys.emplace().where = w;
+    return true;
+  }
+  if (v.as<Value::Table>()) return schema<AdaptKeys>().read(v, t.keys.emplace(), w, c);
+  complain_type(c, w, v, "true, false or a table");
+  return false;
+}
+
+std::vector<const Description*> KeyType<AdaptEntry>::nested() {
+  return {&schema<AdaptKeys>().description()};
+}
+
+template <>
 const Schema<DiscretisationKeys>& schema<DiscretisationKeys>() {
   using Keys = DiscretisationKeys;
   static const auto declared =
@@ -323,7 +355,8 @@ const Schema<DiscretisationKeys>& schema<DiscretisationKeys>() {
           .key("refine", &Keys::refine,
                {.text = "Bisections of every element.", .range = Range::between(0, most_bisections)})
           .key("patch", &Keys::patch, {.text = "Other choices for some patches: [[discretisation.patch]]."})
-          .later({"adapt"});
+          .key("adapt", &Keys::adapt,
+               {.text = "Refinement where the error is largest, beginning with the above; true takes the defaults."});
   return declared;
 }
 

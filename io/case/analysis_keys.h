@@ -137,9 +137,32 @@ struct PatchDiscretisationKeys {
   KeyPlace where;
 };
 
+/// Refinement where the error is largest, until its estimate meets the tolerance.
+struct AdaptKeys {
+  double tolerance = 1e-4;
+  int max_unknowns = 5000;
+  int max_steps = 50;
+  double fraction = 0.5;
+  KeyPlace where;
+};
+
+/// "adapt": true for the defaults, or a table.
+struct AdaptEntry {
+  std::optional<AdaptKeys> keys;
+};
+
+template <>
+struct KeyType<AdaptEntry> {
+  static std::string type() { return "true, false or table"; }
+  static std::vector<const Description*> nested();
+  static bool read(const Value& v, AdaptEntry& t, const Range& r, const KeyPlace& w, Complaints& c);
+  static std::string print(const AdaptEntry&) { return "false"; }
+};
+
 struct DiscretisationKeys {
   std::optional<int> degree;
   int refine = 0;
+  AdaptEntry adapt;
   std::vector<PatchDiscretisationKeys> patch;
   KeyPlace where;
 };

@@ -65,6 +65,8 @@ void print_shortfalls(const io::Report& report, const std::string& file, std::os
   if (!unreached.empty()) {
     print_message(err, fmt::format("{}: the tolerance is not reached: {}", file, fmt::join(unreached, ", ")));
   }
+  if (report.analysis && report.analysis->adaptive && !report.analysis->adaptive->is_reached())
+    print_message(err, fmt::format("{}: {}", file, report.analysis->adaptive->shortfall));
   for (const io::ExpectationResult& result : report.expectations) {
     if (result.met) continue;
     const std::string off = result.difference ? fmt::format("off by {:.2g}", *result.difference) : "without a value";

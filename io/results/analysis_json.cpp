@@ -77,6 +77,29 @@ Json condition_json(const ConditionResult& result) {
   return json;
 }
 
+Json errors_json(const std::vector<std::pair<std::string, double>>& errors) {
+  Json json = Json::object();
+  for (const auto& [name, value] : errors) json[name] = number(value);
+  return json;
+}
+
+Json adaptive_json(const AdaptiveHistory& history) {
+  Json json;
+  json["tolerance"] = number(history.tolerance);
+  json["reached"] = history.is_reached();
+  json["end"] = history.end;
+  Json& steps = json["steps"] = Json::array();
+  for (const AdaptiveStepResult& step : history.steps) {
+    steps.push_back({{"elements", step.elements},
+                     {"functions", step.functions},
+                     {"unknowns", step.unknowns},
+                     {"estimate", number(step.estimate)},
+                     {"errors", errors_json(step.errors)},
+                     {"seconds", number(step.seconds)}});
+  }
+  return json;
+}
+
 }  // namespace
 
 Json analysis_json(const AnalysisReport& report) {
@@ -91,8 +114,8 @@ Json analysis_json(const AnalysisReport& report) {
   json["residual"] = number(report.residual);
   json["matrix_memory"] = report.matrix_memory;
   json["peak_memory"] = report.peak_memory;
-  Json& errors = json["errors"] = Json::object();
-  for (const auto& [name, value] : report.errors) errors[name] = number(value);
+  if (report.adaptive) json["adaptive"] = adaptive_json(*report.adaptive);
+  json["errors"] = errors_json(report.errors);
   Json& conditions = json["boundary_conditions"] = Json::object();
   for (const ConditionResult& result : report.conditions) conditions[result.name] = condition_json(result);
   json["load"] = report.components == 1 && report.load.size() == 1 ? number(report.load[0]) : vector_json(report.load);

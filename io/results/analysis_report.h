@@ -69,6 +69,30 @@ struct ConditionResult {
   Eigen::VectorXd moment;
 };
 
+/// A solution on the way of adaptive refinement.
+struct AdaptiveStepResult {
+  std::size_t elements = 0;
+  std::size_t functions = 0;
+  std::size_t unknowns = 0;
+  /// Of the relative error.
+  double estimate = 0.0;
+  /// Those against [exact], on the boundary and at the probes.
+  std::vector<std::pair<std::string, double>> errors;
+  double seconds = 0.0;
+};
+
+struct AdaptiveHistory {
+  double tolerance = 0.0;
+  /// At least one.
+  std::vector<AdaptiveStepResult> steps;
+  /// "tolerance_reached", "max_steps", "max_unknowns" or "max_levels".
+  std::string end;
+  /// Why the tolerance is not reached; empty if it is.
+  std::string shortfall;
+
+  bool is_reached() const { return shortfall.empty(); }
+};
+
 struct AnalysisReport {
   std::string equation;
   bool exterior = false;
@@ -84,6 +108,8 @@ struct AnalysisReport {
   std::size_t matrix_memory = 0;
   /// Bytes: the largest that the program has taken so far.
   std::size_t peak_memory = 0;
+  /// With [discretisation] adapt.
+  std::optional<AdaptiveHistory> adaptive;
   /// Relative errors against [exact].
   std::vector<std::pair<std::string, double>> errors;
   std::vector<ConditionResult> conditions;

@@ -326,7 +326,8 @@ RunStatus overall_status(const Report& report) {
     return quantity.status == quadrature::Status::tolerance_not_reached;
   };
   if (std::any_of(report.properties.begin(), report.properties.end(), unreached) ||
-      std::any_of(report.integrals.begin(), report.integrals.end(), unreached)) {
+      std::any_of(report.integrals.begin(), report.integrals.end(), unreached) ||
+      (report.analysis && report.analysis->adaptive && !report.analysis->adaptive->is_reached())) {
     return RunStatus::tolerance_not_reached;
   }
   const auto missed = [](const ExpectationResult& result) { return !result.met; };

@@ -355,6 +355,30 @@ void write_conditions(hid_t parent, const std::vector<ConditionResult>& conditio
   }
 }
 
+/// One entry a step.
+void write_history(hid_t parent, const AdaptiveHistory& history) {
+  const Handle group = open_group(parent, "adaptive");
+  write_attribute<double>(group, "tolerance", history.tolerance);
+  write_text_attribute(group, "end", history.end);
+  std::vector<std::int64_t> elements;
+  std::vector<std::int64_t> unknowns;
+  std::vector<double> estimates;
+  for (const AdaptiveStepResult& step : history.steps) {
+    elements.push_back(static_cast<std::int64_t>(step.elements));
+    unknowns.push_back(static_cast<std::int64_t>(step.unknowns));
+    estimates.push_back(step.estimate);
+  }
+  const hsize_t count = history.steps.size();
+  write_dataset(group, "elements", elements, {count});
+  write_dataset(group, "unknowns", unknowns, {count});
+  write_dataset(group, "estimate", estimates, {count});
+  for (std::size_t k = 0; k < history.steps.front().errors.size(); ++k) {
+    std::vector<double> errors;
+    for (const AdaptiveStepResult& step : history.steps) errors.push_back(step.errors[k].second);
+    write_dataset(group, history.steps.front().errors[k].first, errors, {count});
+  }
+}
+
 void write_analysis(hid_t file, const AnalysisReport& report, const AnyAnalysis& fields) {
   const Handle group = open_group(file, "analysis");
   write_text_attribute(group, "equation", report.equation);
@@ -366,6 +390,7 @@ void write_analysis(hid_t file, const AnalysisReport& report, const AnyAnalysis&
   write_attribute<std::int64_t>(group, "matrix_memory", static_cast<std::int64_t>(report.matrix_memory));
   write_attribute<std::int64_t>(group, "peak_memory", static_cast<std::int64_t>(report.peak_memory));
   if (report.balance) write_attribute<double>(group, "balance", *report.balance);
+  if (report.adaptive) write_history(group, *report.adaptive);
   const Handle errors = open_group(group, "errors");
   for (const auto& [name, value] : report.errors) write_attribute<double>(errors, name, value);
   write_conditions(group, report.conditions);

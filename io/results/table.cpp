@@ -123,6 +123,25 @@ std::string analysis_line(const Report& report) {
                      analysis.solve_time);
 }
 
+/// The steps of adaptive refinement with the errors that are known.
+std::string history_text(const Report& report) {
+  if (!report.analysis || !report.analysis->adaptive) return "";
+  const AdaptiveHistory& history = *report.analysis->adaptive;
+  std::vector<TextTable::Column> columns{
+      {"step", Align::right}, {"elements", Align::right}, {"unknowns", Align::right}, {"estimate", Align::right}};
+  for (const auto& [name, value] : history.steps.front().errors) columns.push_back({name, Align::right});
+  TextTable table(columns);
+  for (std::size_t i = 0; i < history.steps.size(); ++i) {
+    const AdaptiveStepResult& step = history.steps[i];
+    std::vector<std::string> row{fmt::format("{}", i + 1), fmt::format("{}", step.elements),
+                                 fmt::format("{}", step.unknowns), small_number(step.estimate)};
+    for (const auto& [name, value] : step.errors) row.push_back(small_number(value));
+    table.add_row(std::move(row));
+  }
+  return fmt::format("  adaptive refinement, tolerance {:g} {}\n\n{}", history.tolerance,
+                     history.is_reached() ? "reached" : "NOT REACHED", table.text(2));
+}
+
 /// What of an analysis is worth a line: errors, fluxes and forces, and whatever is expected.
 bool is_shown(const Report& report, const Quantity& quantity) {
   const auto has_name = [&](const auto& error) { return error.first == quantity.name; };
@@ -211,8 +230,8 @@ std::string results_text(const Report& report) {
     }
   }
   add_quantity(table, report, {"closure_defect", single(report.geometry.closure_defect), {}, {}, {}, ""});
-  return fmt::format("{}\n  {}\n{}{}\n{}\n  {}\n", report.title, geometry_line(report.geometry), cad_line(report),
-                     analysis_line(report), table.text(2), status_line(report));
+  return fmt::format("{}\n  {}\n{}{}{}\n{}\n  {}\n", report.title, geometry_line(report.geometry), cad_line(report),
+                     analysis_line(report), history_text(report), table.text(2), status_line(report));
 }
 
 std::string verification_text(const std::vector<VerifiedCase>& cases) {

@@ -76,12 +76,8 @@ int moment_count(int components, int dimension) {
 
 template <int Dim>
 FieldIntegrals<Dim> nothing(int components) {
-  return {0.0,
-          Eigen::VectorXd::Zero(components),
-          Eigen::VectorXd::Zero(moment_count(components, Dim)),
-          Eigen::VectorXd::Zero(components),
-          Eigen::MatrixXd::Zero(components, Dim),
-          0.0};
+  return {0.0, Eigen::VectorXd::Zero(components), Eigen::VectorXd::Zero(moment_count(components, Dim)),
+          Eigen::VectorXd::Zero(components), Eigen::MatrixXd::Zero(components, Dim)};
 }
 
 template <int Dim>
@@ -92,6 +88,8 @@ void add(const FieldIntegrals<Dim>& part, FieldIntegrals<Dim>& sum) {
   sum.potential += part.potential;
   sum.potential_normal += part.potential_normal;
   sum.work += part.work;
+  sum.potential_squared += part.potential_squared;
+  sum.flux_magnitude += part.flux_magnitude;
 }
 
 /// arm x force.
@@ -120,6 +118,8 @@ FieldIntegrals<Dim> integrate(const NodeView<Dim>& nodes, const Densities& densi
     sum.potential += weight * u;
     sum.potential_normal += weight * u * gather<Dim>(nodes.normal, q).transpose();
     sum.work += u.dot(t);
+    sum.potential_squared += weight * u.squaredNorm();
+    sum.flux_magnitude += weight * densities.flux.row(row).norm();
     add_moment<Dim>(gather<Dim>(nodes.position, q) - point, t, sum.moment);
   }
   return sum;
@@ -208,9 +208,9 @@ class ExactField {
 }  // namespace
 
 template <int Dim>
-ResultIntegrals<Dim> result_integrals(const Problem<Dim>& problem, const FieldSpace<Dim>& space,
-                                      const Solution<Dim>& solution, const geometry::Point<Dim>& point,
-                                      const EvaluationOptions& options) {
+BoundaryIntegrals<Dim> field_integrals(const Problem<Dim>& problem, const FieldSpace<Dim>& space,
+                                       const Solution<Dim>& solution, const EvaluationOptions& options,
+                                       const geometry::Point<Dim>& point) {
   const int components = static_cast<int>(solution.flux.cols());
   std::vector<FieldIntegrals<Dim>> parts(space.elements.size());
   ElementSweep<Dim>(problem, space, solution, options)
@@ -220,7 +220,7 @@ ResultIntegrals<Dim> result_integrals(const Problem<Dim>& problem, const FieldSp
   int patch_count = 0;
   for (const auto& element : space.table.elements) patch_count = std::max(patch_count, element.patch + 1);
   const FieldIntegrals<Dim> zero = nothing<Dim>(components);
-  ResultIntegrals<Dim> result{zero, {}, {}, {}, {}, {}};
+  BoundaryIntegrals<Dim> result{zero, {}, {}};
   result.patches.assign(static_cast<std::size_t>(patch_count), zero);
   result.conditions.assign(problem.conditions.size(), zero);
   for (std::size_t e = 0; e < parts.size(); ++e) {
@@ -228,6 +228,15 @@ ResultIntegrals<Dim> result_integrals(const Problem<Dim>& problem, const FieldSp
     add(parts[e], result.patches[static_cast<std::size_t>(space.table.elements[e].patch)]);
     add(parts[e], result.conditions[static_cast<std::size_t>(problem.condition_of[e])]);
   }
+  return result;
+}
+
+template <int Dim>
+ResultIntegrals<Dim> result_integrals(const Problem<Dim>& problem, const FieldSpace<Dim>& space,
+                                      const Solution<Dim>& solution, const geometry::Point<Dim>& point,
+                                      const EvaluationOptions& options) {
+  ResultIntegrals<Dim> result{field_integrals(problem, space, solution, options, point), {}, {}, {}};
+  const int components = static_cast<int>(solution.flux.cols());
   result.load = {Eigen::VectorXd::Zero(components), Eigen::VectorXd::Zero(moment_count(components, Dim))};
   if (!problem.loads.empty())
     result.load = load_resultant<Dim>(problem.loads, space.table, point, options.tolerance, options.threads);
@@ -254,6 +263,10 @@ BoundaryErrors<Dim> boundary_errors(const Problem<Dim>& problem, const FieldSpac
   return {potential.norms(), flux.norms()};
 }
 
+template BoundaryIntegrals<2> field_integrals(const Problem<2>&, const FieldSpace<2>&, const Solution<2>&,
+                                              const EvaluationOptions&, const geometry::Point<2>&);
+template BoundaryIntegrals<3> field_integrals(const Problem<3>&, const FieldSpace<3>&, const Solution<3>&,
+                                              const EvaluationOptions&, const geometry::Point<3>&);
 template ResultIntegrals<2> result_integrals(const Problem<2>&, const FieldSpace<2>&, const Solution<2>&,
                                              const geometry::Point<2>&, const EvaluationOptions&);
 template ResultIntegrals<3> result_integrals(const Problem<3>&, const FieldSpace<3>&, const Solution<3>&,

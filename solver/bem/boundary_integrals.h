@@ -29,14 +29,28 @@ struct FieldIntegrals {
   /// int u . t dS; half of it is the energy (stored in the domain, or in the fluid with the opposite sign) if there are
   /// no loads in the domain.
   double work = 0.0;
+  /// int |u|^2 dS and int |t| dS.
+  double potential_squared = 0.0;
+  double flux_magnitude = 0.0;
 };
 
+/// Over all of the boundary and its parts.
 template <int Dim>
-struct ResultIntegrals {
+struct BoundaryIntegrals {
   FieldIntegrals<Dim> total;
   /// By the number of the patch, and of the condition of the problem.
   std::vector<FieldIntegrals<Dim>> patches;
   std::vector<FieldIntegrals<Dim>> conditions;
+};
+
+/// Moments about `point`. Unknown fields enter through their coefficients, prescribed ones through their functions.
+template <int Dim>
+BoundaryIntegrals<Dim> field_integrals(const Problem<Dim>& problem, const FieldSpace<Dim>& space,
+                                       const Solution<Dim>& solution, const EvaluationOptions& options = {},
+                                       const geometry::Point<Dim>& point = geometry::Point<Dim>::Zero());
+
+template <int Dim>
+struct ResultIntegrals : BoundaryIntegrals<Dim> {
   /// Of the loads in the domain, about the same point.
   LoadResultant load;
   /// Interior problems: total.flux + load.force, which is zero but for the errors of discretisation, and likewise for
@@ -45,7 +59,7 @@ struct ResultIntegrals {
   Eigen::VectorXd moment_imbalance;
 };
 
-/// Moments about `point`. Unknown fields enter through their coefficients, prescribed ones through their functions.
+/// field_integrals() and how far they and the loads are from balance.
 template <int Dim>
 ResultIntegrals<Dim> result_integrals(const Problem<Dim>& problem, const FieldSpace<Dim>& space,
                                       const Solution<Dim>& solution,

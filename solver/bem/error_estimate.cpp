@@ -5,11 +5,12 @@
 #include <cstddef>
 #include <memory>
 #include <numeric>
-#include <utility>
+#include <variant>
 
 #include "geometry/bezier/element_jet.h"
 #include "quadrature/gauss_legendre.h"
 #include "quadrature/parallel.h"
+#include "solver/bem/boundary_integrals.h"
 #include "solver/bem/representation.h"
 
 namespace isorim::solver {
@@ -213,34 +214,21 @@ std::vector<int> mark_elements(std::span<const double> indicators, double share)
 }
 
 template <int Dim>
-AdaptiveResult<Dim> solve_adaptively(
-    FieldSpace<Dim> space, const std::function<Problem<Dim>(const FieldSpace<Dim>&)>& problem_on,
-    const std::function<FieldSpace<Dim>(const FieldSpace<Dim>&, std::span<const int>)>& refine,
-    const AdaptiveOptions& options) {
-  AdaptiveResult<Dim> result;
-  result.space = std::move(space);
-  while (true) {
-    result.problem = problem_on(result.space);
-    result.solution = solve<Dim>(result.problem, result.space, options.solve);
-    result.indicators = error_indicators<Dim>(result.problem, result.space, result.solution, options.estimate);
-    result.steps.push_back({result.space.function_count(), total_indicator(result.indicators)});
-    const bool is_enough = result.steps.back().indicator <= options.reduction * result.steps.front().indicator;
-    if (is_enough || static_cast<int>(result.steps.size()) >= options.max_steps ||
-        result.space.function_count() >= options.max_functions)
-      return result;
-    result.space = refine(result.space, mark_elements(result.indicators, options.share));
-  }
+double solution_size(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const Solution<Dim>& solution,
+                     const EvaluationOptions& options) {
+  const FieldIntegrals<Dim> total = field_integrals(problem, space, solution, options).total;
+  const auto* laplace = std::get_if<Laplace<Dim>>(&problem.equation);
+  const double stiffness = laplace ? laplace->conductivity : std::get<Elasticity<Dim>>(problem.equation).shear_modulus;
+  const double length = geometry::bounding_box(space.table).diagonal();
+  const double flux = total.flux_magnitude / stiffness;
+  return std::sqrt(std::max(total.potential_squared, 0.0) / length + flux * flux * std::pow(length, 2 - Dim));
 }
 
 template std::vector<double> error_indicators(const Problem<2>&, const FieldSpace<2>&, const Solution<2>&,
                                               const EvaluationOptions&);
 template std::vector<double> error_indicators(const Problem<3>&, const FieldSpace<3>&, const Solution<3>&,
                                               const EvaluationOptions&);
-template AdaptiveResult<2> solve_adaptively(
-    FieldSpace<2>, const std::function<Problem<2>(const FieldSpace<2>&)>&,
-    const std::function<FieldSpace<2>(const FieldSpace<2>&, std::span<const int>)>&, const AdaptiveOptions&);
-template AdaptiveResult<3> solve_adaptively(
-    FieldSpace<3>, const std::function<Problem<3>(const FieldSpace<3>&)>&,
-    const std::function<FieldSpace<3>(const FieldSpace<3>&, std::span<const int>)>&, const AdaptiveOptions&);
+template double solution_size(const Problem<2>&, const FieldSpace<2>&, const Solution<2>&, const EvaluationOptions&);
+template double solution_size(const Problem<3>&, const FieldSpace<3>&, const Solution<3>&, const EvaluationOptions&);
 
 }  // namespace isorim::solver

@@ -1,18 +1,14 @@
 #pragma once
 
-#include <cstddef>
-#include <functional>
 #include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "solver/bem/evaluation.h"
 #include "solver/bem/field_space.h"
 #include "solver/bem/problem.h"
 #include "solver/bem/solve.h"
 
-/// How wrong a solution is, element by element, and refinement where it is worst.
+/// How wrong a solution is, element by element.
 namespace isorim::solver {
 
 /// An indicator for every element: with r the residual of the integral equation (kernels.h), which collocation makes
@@ -37,40 +33,14 @@ double total_indicator(std::span<const double> indicators);
 /// are taken along, so that symmetric problems stay symmetric.
 std::vector<int> mark_elements(std::span<const double> indicators, double share);
 
-struct AdaptiveOptions {
-  SolveOptions solve;
-  EvaluationOptions estimate;
-  /// Of Doerfler's marking.
-  double share = 0.5;
-  /// Solves at most so many times.
-  int max_steps = 20;
-  /// Refines no more when the space has so many functions.
-  int max_functions = 5000;
-  /// Stops when the total indicator, relative to that of the first step, is no larger; 0: never.
-  double reduction = 0.0;
-};
-
-struct AdaptiveStep {
-  int functions = 0;
-  double indicator = 0.0;
-};
-
+/// How large a solution is in the norm of the indicators: with L the diagonal of the boundary's box and k the
+/// conductivity or shear modulus, the root of
+///
+///   (1 / L) int |u|^2 dS + (int |t / k| dS)^2 / L^(Dim - 2).
+///
+/// The flux enters with its first power since that of a singular solution need not have a square integral.
 template <int Dim>
-struct AdaptiveResult {
-  /// Of the last step.
-  FieldSpace<Dim> space;
-  Problem<Dim> problem;
-  Solution<Dim> solution;
-  std::vector<double> indicators;
-  std::vector<AdaptiveStep> steps;
-};
-
-/// Solve, estimate, mark, refine. `problem_on` states the problem on a space's elements; `refine` gives the space in
-/// which the elements of the last one that are marked are divided.
-template <int Dim>
-AdaptiveResult<Dim> solve_adaptively(
-    FieldSpace<Dim> space, const std::function<Problem<Dim>(const FieldSpace<Dim>&)>& problem_on,
-    const std::function<FieldSpace<Dim>(const FieldSpace<Dim>&, std::span<const int>)>& refine,
-    const AdaptiveOptions& options = {});
+double solution_size(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const Solution<Dim>& solution,
+                     const EvaluationOptions& options = {});
 
 }  // namespace isorim::solver

@@ -143,12 +143,12 @@ std::vector<double> jumps(std::span<const double> breakpoints, std::span<const d
   return result;
 }
 
-/// The line's splines on the breakpoints, bisected `level` times; the groups are those of level 0.
-LineSpace field_line(const KnotVector& geometry, int degree, std::span<const double> breakpoints, int level,
-                     std::span<const double> creases, bool closed, const GroupGrid& groups, int d) {
+/// The line's splines on `fine`, a refinement of the breakpoints of level 0, whose cells the groups are of.
+LineSpace field_line(const KnotVector& geometry, int degree, std::span<const double> breakpoints,
+                     std::span<const double> fine, std::span<const double> creases, bool closed,
+                     const GroupGrid& groups, int d) {
   const bool periodic = closed && !groups.differ(d, breakpoints.size() - 2, 0);
-  return line_space(field_knots(geometry, degree, bisected(breakpoints, level), jumps(breakpoints, creases, groups, d)),
-                    periodic);
+  return line_space(field_knots(geometry, degree, fine, jumps(breakpoints, creases, groups, d)), periodic);
 }
 
 /// A patch in the table of elements of level 0.
@@ -172,13 +172,18 @@ GroupGrid group_grid(const NurbsCurve<2>&, const PatchRequest&, const PatchEleme
   return {{refined.groups.begin(), refined.groups.end()}, {refined.groups.size(), 1}};
 }
 
-TensorSpace<2> whole_space(const NurbsCurve<2>& curve, const PatchRequest& request, const GroupGrid& grid,
-                           int level = 0) {
+/// leaves: the curve's elements, bisected as they may be.
+PatchSpace<2> spline_space(const NurbsCurve<2>& curve, const PatchRequest& request, const PatchElements<2>& patch,
+                           std::span<const BezierElement<2>> leaves) {
   const NurbsCurve<2> shape = clamp(curve);
   const PatchSmoothness<2> smooth = smoothness(shape);
   const std::vector<double> breakpoints = bisected(shape.knots().breakpoints(), request.refine);
-  return tensor_space(shape, {field_line(shape.knots(), request.degree_over(shape.knots()), breakpoints, level,
-                                         smooth.creases[0], smooth.closed[0], grid, 0)});
+  std::vector<double> fine;
+  for (const BezierElement<2>& leaf : leaves) fine.push_back(leaf.domain[0].first);
+  fine.push_back(breakpoints.back());
+  const LineSpace line = field_line(shape.knots(), request.degree_over(shape.knots()), breakpoints, fine,
+                                    smooth.creases[0], smooth.closed[0], group_grid(shape, request, patch), 0);
+  return patch_space<2>(tensor_space(shape, {line}), leaves);
 }
 
 std::array<std::vector<double>, 2> breakpoints_of(const NurbsSurface<3>& surface, const PatchRequest& request) {
@@ -211,8 +216,8 @@ TensorSpace<3> whole_space(const NurbsSurface<3>& surface, const PatchRequest& r
   const std::array<std::vector<double>, 2> breakpoints = breakpoints_of(shape, request);
   const auto line = [&](std::size_t d) {
     const KnotVector& knots = shape.knots(d == 0 ? geometry::Direction::u : geometry::Direction::v);
-    return field_line(knots, request.degree_over(knots), breakpoints[d], level, smooth.creases[d], smooth.closed[d],
-                      grid, static_cast<int>(d));
+    return field_line(knots, request.degree_over(knots), breakpoints[d], bisected(breakpoints[d], level),
+                      smooth.creases[d], smooth.closed[d], grid, static_cast<int>(d));
   };
   return tensor_space(shape, {line(0), line(1)}, smooth);
 }
@@ -240,15 +245,14 @@ bool takes_own_functions(const ExtractedSurface& surface, const PatchRequest& re
          });
 }
 
-/// The space on a curve or whole surface: of tensor products, or locally refined; leaves: its elements.
-template <int Dim>
-PatchSpace<Dim> spline_space(const CarrierShape<Dim>& shape, const PatchRequest& request,
-                             const PatchElements<Dim>& patch, std::span<const BezierElement<Dim>> leaves) {
+/// The space on a whole surface: of tensor products, or locally refined; leaves: its elements.
+PatchSpace<3> spline_space(const NurbsSurface<3>& shape, const PatchRequest& request, const PatchElements<3>& patch,
+                           std::span<const BezierElement<3>> leaves) {
   const GroupGrid grid = group_grid(shape, request, patch);
-  if (!patch.tree || patch.tree->levels() == 1) return patch_space<Dim>(whole_space(shape, request, grid), leaves);
-  std::vector<TensorSpace<Dim>> levels;
+  if (!patch.tree || patch.tree->levels() == 1) return patch_space<3>(whole_space(shape, request, grid), leaves);
+  std::vector<TensorSpace<3>> levels;
   for (int level = 0; level < patch.tree->levels(); ++level) levels.push_back(whole_space(shape, request, grid, level));
-  return hierarchical_space<Dim>(*patch.tree, levels, leaves);
+  return hierarchical_space<3>(*patch.tree, levels, leaves);
 }
 
 /// A patch's space by the kind of its shape.
@@ -258,7 +262,7 @@ struct SurfaceSpace {
   std::span<const BezierElement<3>> leaves;
 
   PatchSpace<3> operator()(const NurbsSurface<3>& surface) const {
-    return spline_space<3>(surface, request, patch, leaves);
+    return spline_space(surface, request, patch, leaves);
   }
   PatchSpace<3> operator()(const TrimmedSurface& face) const {
     return trimmed_space(whole_space(face.surface(), request, group_grid(face.surface(), request, patch)),
@@ -290,7 +294,7 @@ PatchSpace<3> patch_space(const geometry::SurfaceShape& shape, const PatchReques
 
 PatchSpace<2> patch_space(const NurbsCurve<2>& curve, const PatchRequest& request, const PatchElements<2>& patch,
                           std::span<const BezierElement<2>> leaves) {
-  return spline_space<2>(curve, request, patch, leaves);
+  return spline_space(curve, request, patch, leaves);
 }
 
 /// Cells of level 0 in each direction; nothing for patches that cannot be refined locally.
@@ -341,9 +345,10 @@ void append_part(ElementTable<Dim>& table, const ElementTable<Dim>& from, Bezier
   std::array<int, Dim - 1> degrees;
   for (std::size_t d = 0; d + 1 < Dim; ++d) degrees[d] = element.degree[d];
   for (std::size_t d = 0; d + 1 < Dim && cell.level > 0; ++d) {
-    const int count = 1 << cell.level;
-    const int index = cell.index[d] % count;
-    const geometry::Interval part{static_cast<double>(index) / count, static_cast<double>(index + 1) / count};
+    const std::int64_t count = std::int64_t{1} << cell.level;
+    const double width = 1.0 / static_cast<double>(count);
+    const double index = static_cast<double>(cell.index[d] % count);
+    const geometry::Interval part{index * width, (index + 1.0) * width};
     geometry::restrict_net(std::span(table.nets).subspan(element.offset), Dim + 1, degrees, static_cast<int>(d), part);
     const geometry::Interval domain = element.domain[d];
     element.domain[d] = {domain.first + part.first * domain.length(), domain.first + part.last * domain.length()};
@@ -351,24 +356,27 @@ void append_part(ElementTable<Dim>& table, const ElementTable<Dim>& from, Bezier
   table.elements.push_back(element);
 }
 
-/// The leaves of a patch, at the end of the space's table; coarse: the patch's elements of level 0.
+/// The leaves of a patch with their groups, at the end of the space's table.
 template <int Dim>
-void append_leaves(FieldSpace<Dim>& space, const ElementTable<Dim>& from, std::span<const BezierElement<Dim>> coarse,
-                   const CellTree<Dim>* tree) {
+void append_leaves(FieldSpace<Dim>& space, const PatchElements<Dim>& patch) {
+  const std::span<const BezierElement<Dim>> coarse = patch.elements();
+  const CellTree<Dim>* tree = patch.tree;
   const GridCell<Dim> none{-1, {}};
   if (!tree) {
     for (const BezierElement<Dim>& element : coarse) {
-      append_part<Dim>(space.table, from, element, none);
+      append_part<Dim>(space.table, patch.table, element, none);
       space.cells.push_back(none);
     }
+    space.groups.insert(space.groups.end(), patch.groups.begin(), patch.groups.end());
     return;
   }
   for (const GridCell<Dim>& leaf : tree->leaves()) {
     std::size_t index = static_cast<std::size_t>(leaf.index[0] >> leaf.level);
     if constexpr (Dim == 3)
       index += static_cast<std::size_t>(leaf.index[1] >> leaf.level) * static_cast<std::size_t>(tree->counts()[0]);
-    append_part<Dim>(space.table, from, coarse[index], leaf);
+    append_part<Dim>(space.table, patch.table, coarse[index], leaf);
     space.cells.push_back(leaf);
+    space.groups.push_back(patch.groups[index]);
   }
 }
 
@@ -417,7 +425,7 @@ FieldSpace<Dim> field_space(const OrientedBoundary<Dim>& oriented, const Discret
                                    oriented.topology,
                                    trees[i] ? &*trees[i] : nullptr};
     const std::size_t begin = space.table.elements.size();
-    append_leaves<Dim>(space, table, patch.elements(), patch.tree);
+    append_leaves<Dim>(space, patch);
     const std::span<const BezierElement<Dim>> leaves = std::span(std::as_const(space.table.elements)).subspan(begin);
     try {
       append<Dim>(space, patch_space(boundary.patches[i].shape, requests[i], patch, leaves));
@@ -440,12 +448,14 @@ void refine_patch(DiscretisationOptions<Dim>& options, const std::string& name, 
   special->second.refine = refine;
 }
 
-int largest_degree(const NurbsCurve<2>& curve, const PatchRequest& request) {
-  return request.degree_over(curve.knots());
+/// In cells: how far around a bisected one levels differ by one at most.
+int grading_radius(const NurbsCurve<2>&, const PatchRequest&) {
+  return 1;
 }
-int largest_degree(const geometry::SurfaceShape& shape, const PatchRequest& request) {
+int grading_radius(const geometry::SurfaceShape& shape, const PatchRequest& request) {
   const NurbsSurface<3>& surface = std::get<NurbsSurface<3>>(shape);
-  return std::max(request.degree_over(surface.knots_u()), request.degree_over(surface.knots_v()));
+  const int degree = std::max(request.degree_over(surface.knots_u()), request.degree_over(surface.knots_v()));
+  return (degree + 1) / 2;
 }
 
 }  // namespace
@@ -458,17 +468,20 @@ DiscretisationOptions<Dim> refine_locally(const OrientedBoundary<Dim>& oriented,
   const std::vector<PatchRequest> requests = patch_requests(boundary, options);
   const std::vector<std::optional<CellTree<Dim>>> trees = cell_trees(boundary, requests, options);
   std::vector<std::vector<GridCell<Dim>>> cells(requests.size());
-  for (const int e : marked)
-    cells[static_cast<std::size_t>(space.table.elements[static_cast<std::size_t>(e)].patch)].push_back(
-        space.cells[static_cast<std::size_t>(e)]);
+  for (const int e : marked) {
+    const auto element = static_cast<std::size_t>(e);
+    if (space.cells[element].level + 2 <= DiscretisationOptions<Dim>::max_local_levels)
+      cells[static_cast<std::size_t>(space.table.elements[element].patch)].push_back(space.cells[element]);
+  }
   DiscretisationOptions<Dim> result = options;
   result.bisected.clear();
   for (std::size_t i = 0; i < requests.size(); ++i) {
     if (!trees[i]) {
-      if (!cells[i].empty()) refine_patch(result, boundary.patches[i].name, requests[i].refine + 1);
+      if (!cells[i].empty() && requests[i].refine < DiscretisationOptions<Dim>::max_refine)
+        refine_patch(result, boundary.patches[i].name, requests[i].refine + 1);
       continue;
     }
-    const int radius = (largest_degree(boundary.patches[i].shape, requests[i]) + 1) / 2;
+    const int radius = grading_radius(boundary.patches[i].shape, requests[i]);
     for (const GridCell<Dim>& cell : graded<Dim>(*trees[i], cells[i], radius))
       result.bisected.push_back({static_cast<int>(i), cell});
   }

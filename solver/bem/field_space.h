@@ -56,7 +56,7 @@ struct CollocationPoint {
 template <int Dim>
 struct GridCell {
   int level = 0;
-  std::array<int, Dim - 1> index{};
+  std::array<std::int64_t, Dim - 1> index{};
 
   friend auto operator<=>(const GridCell&, const GridCell&) = default;  // NOLINT(modernize-use-nullptr): takes its 0
 };
@@ -82,6 +82,8 @@ struct FieldSpace {
   std::vector<CollocationPoint<Dim>> points;
   /// Of each element, where its patch can be refined locally; level -1 elsewhere.
   std::vector<GridCell<Dim>> cells;
+  /// Of each element, what DiscretisationOptions::group says of the one of level 0 that it is a part of.
+  std::vector<int> groups;
 
   int function_count() const { return static_cast<int>(points.size()); }
   std::span<const std::int32_t> functions_of(int element) const {
@@ -106,13 +108,15 @@ struct DiscretisationOptions {
   /// By name of the patch: instead of the above.
   std::vector<std::pair<std::string, PatchOptions>> patches;
   /// Local refinement: a cell of a patch (by its index) that is bisected in every direction, of level 0 or a child of
-  /// another one, levels below max_local_levels. Made by refine_locally().
+  /// another one. Made by refine_locally().
   struct BisectedCell {
     int patch = 0;
     GridCell<Dim> cell;
   };
   std::vector<BisectedCell> bisected;
-  static constexpr int max_local_levels = 8;
+  /// Levels that there may be, that of the coarsest cells included. On curves the limit is what rounding leaves of a
+  /// parameter, on surfaces the grid of the finest level.
+  static constexpr int max_local_levels = Dim == 2 ? 33 : 8;
   /// Which elements may share functions: where the numbers of neighbouring elements of a patch differ (other boundary
   /// conditions), functions end along the knot line between them. Called with the patch, and a point and the outward
   /// normal in the middle of an element; empty: all the same.
@@ -135,10 +139,12 @@ struct DiscretisationOptions {
 template <int Dim>
 FieldSpace<Dim> field_space(const geometry::OrientedBoundary<Dim>& boundary, const DiscretisationOptions<Dim>& options);
 
-/// What to build the space from so that the marked elements are bisected. On curves and whole surfaces only they are
-/// (and neighbours, so that levels change by one within the reach of a function): truncated hierarchical B-splines
-/// (hierarchical_space.h), which hold all functions of the space before they were bisected. The groups remain those of
-/// level 0. Trimmed and extracted surfaces with a marked element are bisected as a whole.
+/// What to build the space from so that the marked elements are bisected. All functions of the space before stay in it.
+/// On curves only they are bisected, and neighbours so that the lengths of adjacent elements of a patch keep their
+/// ratio to a factor of 2: knots are inserted. On whole surfaces only they are, and neighbours so that levels change by
+/// one within the reach of a function: truncated hierarchical B-splines (hierarchical_space.h). The groups remain those
+/// of level 0. Trimmed and extracted surfaces with a marked element are bisected as a whole. Elements that cannot be
+/// divided any further (max_local_levels, max_refine) stay as they are.
 template <int Dim>
 DiscretisationOptions<Dim> refine_locally(const geometry::OrientedBoundary<Dim>& boundary,
                                           const DiscretisationOptions<Dim>& options, const FieldSpace<Dim>& space,

@@ -26,7 +26,7 @@ template <int Dim>
 GridCell<Dim> parent(const GridCell<Dim>& cell) {
   GridCell<Dim> result = cell;
   --result.level;
-  for (int& index : result.index) index /= 2;
+  for (std::int64_t& index : result.index) index /= 2;
   return result;
 }
 
@@ -56,7 +56,7 @@ bool CellTree<Dim>::exists(const GridCell<Dim>& cell) const {
 template <int Dim>
 bool CellTree<Dim>::is_inside(const GridCell<Dim>& cell) const {
   for (std::size_t d = 0; d + 1 < Dim; ++d)
-    if (cell.index[d] < 0 || cell.index[d] >= counts_[d] << cell.level) return false;
+    if (cell.index[d] < 0 || cell.index[d] >= std::int64_t{counts_[d]} << cell.level) return false;
   return cell.level >= 0;
 }
 
@@ -193,8 +193,8 @@ void HierarchyBuilder<Dim>::find_supports() {
     for (std::size_t i = 0; i < count; ++i) {
       GridCell<Dim> cell;
       cell.level = static_cast<int>(l);
-      cell.index[0] = static_cast<int>(i % columns);
-      if constexpr (Dim == 3) cell.index[1] = static_cast<int>(i / columns);
+      cell.index[0] = static_cast<std::int64_t>(i % columns);
+      if constexpr (Dim == 3) cell.index[1] = static_cast<std::int64_t>(i / columns);
       const bool exists = tree_.exists(cell);
       const bool bisected = exists && tree_.is_bisected(cell);
       for (const std::int32_t f : functions_on<Dim>(space, i)) {
@@ -217,7 +217,7 @@ Eigen::MatrixXd HierarchyBuilder<Dim>::refinement(const CellFunctions& coarse, c
   for (std::size_t d = 0; d + 1 < Dim; ++d) degrees[d] = levels_[0].lines[d].knots.degree();
   for (Eigen::Index k = 0; k < rows.cols(); ++k)
     for (std::size_t d = 0; d + 1 < Dim; ++d) {
-      const double half = 0.5 * (child.index[d] % 2);
+      const double half = 0.5 * static_cast<double>(child.index[d] % 2);
       geometry::restrict_net({rows.col(k).data(), static_cast<std::size_t>(rows.rows())}, 1, degrees,
                              static_cast<int>(d), Interval{half, half + 0.5});
     }
@@ -317,8 +317,6 @@ template class CellTree<2>;
 template class CellTree<3>;
 template std::vector<GridCell<2>> graded(const CellTree<2>&, std::span<const GridCell<2>>, int);
 template std::vector<GridCell<3>> graded(const CellTree<3>&, std::span<const GridCell<3>>, int);
-template PatchSpace<2> hierarchical_space(const CellTree<2>&, std::span<const TensorSpace<2>>,
-                                          std::span<const BezierElement<2>>);
 template PatchSpace<3> hierarchical_space(const CellTree<3>&, std::span<const TensorSpace<3>>,
                                           std::span<const BezierElement<3>>);
 

@@ -108,6 +108,21 @@ const std::vector<BadCase> conditions{
      {"found \"value\", which goes with"}},
 };
 
+const std::vector<BadCase> discretisations{
+    {"AdaptOfANumber",
+     circle + laplace + everywhere + "[discretisation]\nadapt = 1e-6\n",
+     {"discretisation.adapt: found the real 1e-06; expected true, false or a table"}},
+    {"UnknownKeyOfAdapt",
+     circle + laplace + everywhere + "[discretisation]\nadapt = { tol = 1e-6 }\n",
+     {"discretisation.adapt.tol: unknown key", "tolerance"}},
+    {"AdaptBelowTheSolver",
+     circle + laplace + everywhere + "[discretisation]\nadapt = { tolerance = 1e-12 }\n",
+     {"discretisation.adapt: found the tolerance 1e-12, which is below that of [solve], 1e-10"}},
+    {"FractionAboveOne",
+     circle + laplace + everywhere + "[discretisation]\nadapt = { fraction = 1.5 }\n",
+     {"discretisation.adapt.fraction: found 1.5; expected a number > 0 and <= 1"}},
+};
+
 const std::vector<BadCase> points{
     {"ProbeWithoutPoints",
      circle + laplace + everywhere + "[[probe]]\nname = 'a'\n",
@@ -176,6 +191,7 @@ const std::vector<BadCase> definitions{
 
 INSTANTIATE_TEST_SUITE_P(Sections, BadAnalysis, ::testing::ValuesIn(sections), bad_case_name);
 INSTANTIATE_TEST_SUITE_P(Conditions, BadAnalysis, ::testing::ValuesIn(conditions), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(Discretisations, BadAnalysis, ::testing::ValuesIn(discretisations), bad_case_name);
 INSTANTIATE_TEST_SUITE_P(Points, BadAnalysis, ::testing::ValuesIn(points), bad_case_name);
 INSTANTIATE_TEST_SUITE_P(Expected, BadAnalysis, ::testing::ValuesIn(expected), bad_case_name);
 INSTANTIATE_TEST_SUITE_P(Definitions, BadAnalysis, ::testing::ValuesIn(definitions), bad_case_name);

@@ -82,9 +82,9 @@ TEST(HierarchicalSpace, HoldsTheFunctionsOfTheSpaceBefore) {
     for (int i = 0; i < before.function_count(); ++i) coefficients(i) = std::sin(1.0 + 3.0 * i);
     const auto coarse = [&](int element, double s) {
       const GridCell<2>& cell = refined.space.cells[static_cast<std::size_t>(element)];
-      const int count = 1 << cell.level;
-      return testing::value<2>(before, coefficients, cell.index[0] / count,
-                               Point<1>((cell.index[0] % count + s) / count));
+      const std::int64_t count = std::int64_t{1} << cell.level;
+      const double place = (static_cast<double>(cell.index[0] % count) + s) / static_cast<double>(count);
+      return testing::value<2>(before, coefficients, static_cast<int>(cell.index[0] / count), Point<1>(place));
     };
     Eigen::VectorXd values(refined.space.function_count());
     for (int i = 0; i < values.size(); ++i) {
