@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "geometry/intersection/critical_points.h"
 
 namespace isorim::geometry {
 namespace {
@@ -142,6 +143,20 @@ Eigen::MatrixXd interpolate_bernstein(const Eigen::Ref<const Eigen::MatrixXd>& v
   coefficients.col(0) = values.col(0);
   coefficients.col(n) = values.col(n);
   return coefficients;
+}
+
+std::vector<double> touching_places(const std::function<double(double)>& function, double noise) {
+  std::vector<Stretch> stretches;
+  append_stretches(function, {0.0, 1.0}, noise, stretches);
+  std::vector<double> places;
+  for (const Stretch& stretch : stretches) {
+    for (const double s : touching_places(stretch.polynomial, 2.0 * noise))
+      places.push_back(stretch.part.first + s * stretch.part.length());
+    // The ends of stretches are no ends of the function: an extremum there would be missed.
+    const double end = stretch.part.last;
+    if (end < 1.0 && std::abs(function(end)) <= noise) places.push_back(end);
+  }
+  return places;
 }
 
 SignChart sign_chart(const std::function<double(double)>& function, double noise) {

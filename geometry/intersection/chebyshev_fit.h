@@ -32,4 +32,7 @@ std::vector<NurbsCurve<2>> fit_curve(const std::function<Point2(double)>& curve,
 /// meet it to within `noise`.
 SignChart sign_chart(const std::function<double(double)>& function, double noise);
 
+/// Where a function that is analytic on [0, 1] touches zero: extrema of modulus at most `noise`, inside (0, 1).
+std::vector<double> touching_places(const std::function<double(double)>& function, double noise);
+
 }  // namespace isorim::geometry

@@ -152,7 +152,7 @@ struct CapMaker {
   const ClipOptions& options;
 
   std::vector<Patch<3>> operator()(const PlaneTool& tool) const {
-    const PlaneSection frame = plane_frame(tool, clipper.middle());
+    const PlaneRegion frame = plane_region_frame(tool, clipper.middle());
     return plane_caps(frame, plane_loops(frame, edges, clipper.size(), options));
   }
   std::vector<Patch<3>> operator()(const SphereTool& tool) const {
@@ -169,7 +169,7 @@ struct CapMaker {
   /// The point lies in the region in which a plane through it cuts the solid.
   bool contains(const Point3& point) const {
     const PlaneTool plane{point, Vector3(0.4387, 0.2913, 0.8501)};
-    const PlaneSection cut = section(solid, plane, options);
+    const PlaneRegion cut = section(solid, plane, options);
     if (cut.loops.empty()) return false;
     const Vector3 d = point - cut.origin;
     return FaceLocator(cut.loops).winding_number(Point2(d.dot(cut.axis_x), d.dot(cut.axis_y))).value_or(0) != 0;
@@ -233,10 +233,10 @@ Boundary<3> clip(const Boundary<3>& solid, const ClipTool& tool, const ClipOptio
   return rest ? *rest : half.value_or(solid);
 }
 
-PlaneSection section(const Boundary<3>& solid, const PlaneTool& plane, const ClipOptions& options) {
+PlaneRegion section(const Boundary<3>& solid, const PlaneTool& plane, const ClipOptions& options) {
   const Boundary<3> faces = with_single_surfaces(solid);
   const Clipper clipper(faces, options);
-  PlaneSection result = plane_frame(plane, clipper.middle());
+  PlaneRegion result = plane_region_frame(plane, clipper.middle());
   result.loops = plane_loops(result, clipper.cut(implicit_surface(plane)).edges, clipper.size(), options);
   return result;
 }

@@ -69,8 +69,8 @@ struct ClipOptions {
 /// other nappe too.
 Boundary<3> clip(const Boundary<3>& solid, const ClipTool& tool, const ClipOptions& options = {});
 
-/// The section of a solid by a plane.
-struct PlaneSection {
+/// The region in which a plane cuts a solid.
+struct PlaneRegion {
   /// In the coordinates below, each loop with the solid on its left.
   std::vector<TrimLoop> loops;
   /// (x, y) -> origin + x axis_x + y axis_y; the axes are orthonormal, axis_x x axis_y the plane's normal.
@@ -81,7 +81,7 @@ struct PlaneSection {
 
 /// The region in which a plane cuts a closed, oriented solid: waterlines, frames. A face of the solid in the plane
 /// counts if the solid lies on the side from which the normal points. No loops if the plane misses the solid. Throws
-/// GeometryError as clip() does.
-PlaneSection section(const Boundary<3>& solid, const PlaneTool& plane, const ClipOptions& options = {});
+/// GeometryError as clip() does. plane_section() (intersection/plane_section.h) tells more.
+PlaneRegion section(const Boundary<3>& solid, const PlaneTool& plane, const ClipOptions& options = {});
 
 }  // namespace isorim::geometry

@@ -46,8 +46,11 @@ double from_unit(Interval domain, double s) {
 
 ImplicitTrace::ImplicitTrace(const NurbsSurface<3>& surface, const ImplicitSurface& implicit,
                              const TraceOptions& options)
+    : ImplicitTrace(surface, elements_of(surface), implicit, options) {}
+
+ImplicitTrace::ImplicitTrace(const NurbsSurface<3>& surface, const ElementTable<3>& table,
+                             const ImplicitSurface& implicit, const TraceOptions& options)
     : breakpoints_u_(surface.knots_u().breakpoints()), breakpoints_v_(surface.knots_v().breakpoints()) {
-  const ElementTable<3> table = elements_of(surface);
   const double size = options.size > 0.0 ? options.size : bounding_box(table).diagonal();
   for (const BezierElement<3>& element : table.elements) {
     const Eigen::Map<const HomogeneousPoints<3>> net = table.net_matrix(element);
@@ -145,12 +148,17 @@ void ImplicitTrace::append_knot_line(int before, int after, Side side_before, Si
     if (cuts[i + 1] - cuts[i] < shortest_stretch) continue;
     const bool keeps_first = sign_inside(first, chart_first, cuts[i], cuts[i + 1]) < 0;
     const bool keeps_second = sign_inside(second, chart_second, cuts[i], cuts[i + 1]) < 0;
-    if (keeps_first == keeps_second) continue;
+    const bool is_flat = first.vanishes || second.vanishes;
+    if (keeps_first == keeps_second && is_flat) continue;
     const bool is_vertical = side_before == Side::right;
     Points<2> ends(2, 2);
     for (Eigen::Index k = 0; k < 2; ++k) {
       const double s = cuts[i + static_cast<std::size_t>(k)];
       ends.col(k) = from_unit_square(before, is_vertical ? Point2(1.0, s) : Point2(s, 1.0));
+    }
+    if (keeps_first == keeps_second) {
+      touching_.push_back(NurbsCurve<2>::from_points(KnotVector::bezier(1), ends));
+      continue;
     }
     // Upwards the left one of two elements is on the left, to the right the upper one.
     const bool runs_forward = is_vertical ? keeps_first : keeps_second;

@@ -32,14 +32,22 @@ struct TracedCurve {
 /// for certain and fit_chain() the curves, whose distance from the zero set is a few units of rounding. They end where
 /// elements end and at double points. Where F vanishes along a knot line the curve is that line, if the sign changes
 /// across it; along the boundary of the domain no curves are given. Points and lines where the surfaces touch without a
-/// change of sign leave no trace.
+/// change of sign leave no trace among the curves (find_contacts() knows them).
 class ImplicitTrace {
  public:
   /// Throws GeometryError, with the parameters and the point in space, where the surfaces meet in a singular point that
   /// is not an ordinary double point.
   ImplicitTrace(const NurbsSurface<3>& surface, const ImplicitSurface& implicit, const TraceOptions& options = {});
+  /// The same where the elements of the surface are at hand: those of a boundary of this one whole patch.
+  ImplicitTrace(const NurbsSurface<3>& surface, const ElementTable<3>& elements, const ImplicitSurface& implicit,
+                const TraceOptions& options = {});
 
   const std::vector<TracedCurve>& curves() const { return curves_; }
+
+  /// Stretches of knot lines inside the domain along which F vanishes without a change of sign (and not on all of both
+  /// elements): lines in the direction of the growing parameter.
+  const std::vector<NurbsCurve<2>>& touching_knot_lines() const { return touching_; }
+  int element_count() const { return static_cast<int>(functions_.size()); }
 
   /// What the Bernstein coefficients say of the whole surface: -1 if F is negative everywhere, +1 if it is nowhere
   /// negative (beyond the tolerance), 0 otherwise.
@@ -52,9 +60,9 @@ class ImplicitTrace {
   const ElementFunction& function(int element) const { return functions_[static_cast<std::size_t>(element)]; }
   /// From the surface's parameters to the unit square of the element, which it may leave.
   Point2 to_unit_square(int element, const Point2& uv) const;
+  Point2 from_unit_square(int element, const Point2& point) const;
 
  private:
-  Point2 from_unit_square(int element, const Point2& point) const;
   Interval domain_u(int element) const;
   Interval domain_v(int element) const;
   int columns() const { return static_cast<int>(breakpoints_u_.size()) - 1; }
@@ -67,6 +75,7 @@ class ImplicitTrace {
   std::vector<double> breakpoints_v_;
   std::vector<ElementFunction> functions_;
   std::vector<TracedCurve> curves_;
+  std::vector<NurbsCurve<2>> touching_;
 };
 
 }  // namespace isorim::geometry

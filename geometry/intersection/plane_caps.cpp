@@ -10,8 +10,8 @@
 #include <Eigen/Geometry>
 
 #include "geometry/errors.h"
-#include "geometry/intersection/chebyshev_fit.h"
 #include "geometry/intersection/directed_loops.h"
+#include "geometry/intersection/plane_image.h"
 #include "geometry/intersection/tool_caps.h"
 #include "geometry/shapes/checks.h"
 #include "geometry/trimming/face_locator.h"
@@ -19,44 +19,8 @@
 namespace isorim::geometry {
 namespace {
 
-/// To which curves are met, relative to the size of the solid: the rounding of evaluation.
-constexpr double fit_accuracy = 4e-15;
 /// Loops with less content, relative to the square of the size, are edges that run back on themselves.
 constexpr double smallest_area = 1e-15;
-
-Point2 to_plane(const PlaneSection& frame, const Point3& x) {
-  return {(x - frame.origin).dot(frame.axis_x), (x - frame.origin).dot(frame.axis_y)};
-}
-
-/// If the curve is a line of constant u or v: the isoparametric curve, exactly.
-std::optional<NurbsCurve<3>> isoparametric(const CapEdge& edge) {
-  const NurbsCurve<2>& curve = edge.curve;
-  if (curve.degree() != 1 || curve.knots().basis_count() != 2 || !curve.is_polynomial()) return std::nullopt;
-  const Points<2> ends = curve.control_points();
-  for (const Eigen::Index constant : {0, 1}) {
-    const Eigen::Index running = 1 - constant;
-    if (ends(constant, 0) != ends(constant, 1)) continue;
-    const Direction direction = running == 0 ? Direction::u : Direction::v;
-    const bool forward = ends(running, 0) < ends(running, 1);
-    const Interval whole = edge.surface.knots(direction).domain();
-    const Interval part{std::max(whole.first, ends.row(running).minCoeff()),
-                        std::min(whole.last, ends.row(running).maxCoeff())};
-    if (!(part.length() > 0.0)) return std::nullopt;
-    const NurbsCurve<3> line = restrict_to(isoparametric_curve(edge.surface, direction, ends(constant, 0)), part);
-    return forward ? line : reverse(line);
-  }
-  return std::nullopt;
-}
-
-NurbsCurve<2> project(const NurbsCurve<3>& curve, const PlaneSection& frame) {
-  const HomogeneousPoints<3>& net = curve.homogeneous();
-  HomogeneousPoints<2> flat(3, net.cols());
-  for (Eigen::Index i = 0; i < net.cols(); ++i) {
-    const Vector3 d = net.col(i).head<3>() - net(3, i) * frame.origin;
-    flat.col(i) << d.dot(frame.axis_x), d.dot(frame.axis_y), net(3, i);
-  }
-  return {curve.knots(), flat};
-}
 
 struct PlaneBox {
   Point2 lower = Point2::Constant(std::numeric_limits<double>::infinity());
@@ -72,7 +36,7 @@ struct PlaneBox {
 };
 
 /// The rectangle of the plane around the loops; its parameters are the coordinates of the plane.
-NurbsSurface<3> plane_patch(const PlaneSection& frame, const std::vector<TrimLoop>& loops) {
+NurbsSurface<3> plane_patch(const PlaneRegion& frame, const std::vector<TrimLoop>& loops) {
   PlaneBox box;
   for (const TrimLoop& loop : loops) box.add(loop);
   const Vector2 margin = 0.02 * (box.upper - box.lower);
@@ -97,28 +61,23 @@ bool lies_in(const TrimLoop& hole, const FaceLocator& outer) {
 
 }  // namespace
 
-PlaneSection plane_frame(const PlaneTool& plane, const Point3& near) {
+PlaneRegion plane_region_frame(const PlaneTool& plane, const Point3& near) {
   const Vector3 normal = checks::unit<3>("plane", "normal", plane.normal);
   Eigen::Index least = 0;
   normal.cwiseAbs().minCoeff(&least);
-  PlaneSection frame;
+  PlaneRegion frame;
   frame.origin = near - (near - plane.point).dot(normal) * normal;
   frame.axis_x = normal.cross(Vector3::Unit(least)).normalized();
   frame.axis_y = normal.cross(frame.axis_x).normalized();
   return frame;
 }
 
-std::vector<TrimLoop> plane_loops(const PlaneSection& frame, const std::vector<CapEdge>& edges, double size,
+std::vector<TrimLoop> plane_loops(const PlaneRegion& frame, const std::vector<CapEdge>& edges, double size,
                                   const ClipOptions& options) {
   std::vector<NurbsCurve<2>> curves;
+  const PlaneFrame coordinates{frame.origin, frame.axis_x, frame.axis_y, frame.axis_x.cross(frame.axis_y)};
   for (const CapEdge& edge : edges) {
-    if (const std::optional<NurbsCurve<3>> exact = isoparametric(edge)) {
-      curves.push_back(project(*exact, frame));
-      continue;
-    }
-    const std::vector<NurbsCurve<2>> pieces =
-        fit_curve([&](double s) { return to_plane(frame, evaluate(edge.surface, evaluate(edge.curve, s))); },
-                  fit_accuracy * size);
+    const std::vector<NurbsCurve<2>> pieces = plane_image(edge.surface, edge.curve, coordinates, size);
     curves.insert(curves.end(), pieces.begin(), pieces.end());
   }
   std::vector<TrimLoop> loops =
@@ -128,7 +87,7 @@ std::vector<TrimLoop> plane_loops(const PlaneSection& frame, const std::vector<C
   return loops;
 }
 
-std::vector<Patch<3>> plane_caps(const PlaneSection& frame, const std::vector<TrimLoop>& loops) {
+std::vector<Patch<3>> plane_caps(const PlaneRegion& frame, const std::vector<TrimLoop>& loops) {
   struct Part {
     double area;
     std::vector<TrimLoop> loops;

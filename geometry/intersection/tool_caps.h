@@ -19,15 +19,15 @@ struct CapEdge {
 };
 
 /// The plane with its own coordinates.
-PlaneSection plane_frame(const PlaneTool& plane, const Point3& near);
+PlaneRegion plane_region_frame(const PlaneTool& plane, const Point3& near);
 
 /// The edges in the coordinates of the plane, joined to loops. Edges along lines of constant u or v are exact; others
 /// are met to rounding by polynomials. `size`: the diagonal of the solid's box.
-std::vector<TrimLoop> plane_loops(const PlaneSection& frame, const std::vector<CapEdge>& edges, double size,
+std::vector<TrimLoop> plane_loops(const PlaneRegion& frame, const std::vector<CapEdge>& edges, double size,
                                   const ClipOptions& options);
 
 /// Trimmed parts of the plane, one for each connected part, natural normals along the plane's.
-std::vector<Patch<3>> plane_caps(const PlaneSection& frame, const std::vector<TrimLoop>& loops);
+std::vector<Patch<3>> plane_caps(const PlaneRegion& frame, const std::vector<TrimLoop>& loops);
 
 /// Tells whether a point lies in the solid.
 using PointTest = std::function<bool(const Point3&)>;

@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "geometry/intersection/critical_points.h"
 #include "geometry/nurbs/surface.h"
 
 namespace isorim::geometry {
@@ -47,8 +47,6 @@ struct Range {
   double radius() const { return 0.5 * (most - least); }
 };
 
-enum class CriticalKind { saddle, extremum, degenerate };
-
 /// A point where g and both derivatives vanish.
 struct SingularPoint {
   Point2 place;
@@ -64,26 +62,6 @@ double snap_to_side(double s) {
 
 Point2 snap_to_sides(const Point2& point) {
   return {snap_to_side(point.x()), snap_to_side(point.y())};
-}
-
-CriticalKind kind_of(const Eigen::Matrix2d& hessian) {
-  const double determinant = hessian.determinant();
-  if (std::abs(determinant) <= 1e-8 * hessian.squaredNorm()) return CriticalKind::degenerate;
-  return determinant < 0.0 ? CriticalKind::saddle : CriticalKind::extremum;
-}
-
-/// Newton's step to a zero of the gradient; along a curve of critical points the shortest.
-Vector2 critical_step(const GridJet& jet) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(jet.hessian);
-  const double largest = eigen.eigenvalues().cwiseAbs().maxCoeff();
-  Vector2 step = Vector2::Zero();
-  for (int i = 0; i < 2; ++i) {
-    const double value = eigen.eigenvalues()(i);
-    if (std::abs(value) <= 1e-6 * largest) continue;
-    const Vector2 axis = eigen.eigenvectors().col(i);
-    step -= axis * (axis.dot(jet.gradient) / value);
-  }
-  return step;
 }
 
 /// The two directions in which a saddle's quadratic form vanishes, as columns.

@@ -279,7 +279,7 @@ TEST(Section, OfAHollowBall) {
   hollow.patches.push_back(sphere(0.5).patches.front());
   hollow.patches.back().name = "void";
   hollow = orient(hollow).boundary;
-  const PlaneSection cut = section(hollow, PlaneTool{Point3(0, 0, 0.3), Vector3(0, 0, 1)});
+  const PlaneRegion cut = section(hollow, PlaneTool{Point3(0, 0, 0.3), Vector3(0, 0, 1)});
   EXPECT_EQ(cut.loops.size(), 2U);
   EXPECT_EQ(section(hollow, PlaneTool{Point3(0, 0, 0.7), Vector3(0, 0, 1)}).loops.size(), 1U);
   EXPECT_TRUE(section(hollow, PlaneTool{Point3(0, 0, 1.7), Vector3(0, 0, 1)}).loops.empty());
