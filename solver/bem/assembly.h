@@ -2,10 +2,10 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include <Eigen/Core>
@@ -27,41 +27,24 @@
 /// by flux_scale() where u is. Known data enter through their values at the quadrature nodes.
 namespace isorim::solver {
 
-/// What one thread needs, and what it has summed for one target.
+/// One thread's room for what goes with nodes.
 template <int Dim>
 struct AssemblyRoom {
   explicit AssemblyRoom(const Problem<Dim>& problem) : data(problem) {}
-
-  /// int T_ij dS, entry (i, j), over the elements since start_target().
-  Eigen::Matrix<double, Dim, Dim> double_layer;
-  /// What known data give to the right side.
-  Eigen::Matrix<double, Dim, 1> right;
-  /// Column m: -s int U r_m dS, r_m the flux modes.
-  Eigen::Matrix<double, Dim, Eigen::Dynamic> modes;
-  /// Of the last element: the coefficient of its function a and component c in equation i stands at
-  /// [(i C + c) count + a].
-  std::vector<double> block;
 
   quadrature::NodeBuffer<Dim> buffer;
   BoundaryData<Dim> data;
   NodeBasis<Dim> basis;
   ConditionValues<Dim> values;
   MomentScratch scratch;
-  std::vector<double> single_values;
-  std::vector<double> double_values;
-  std::vector<double> integrands;
-  std::vector<double> along;
-  std::vector<double> product;
-  /// Pointers into the Assembler's store, element by element and rule by rule.
-  std::vector<std::vector<const void*>> kept;
 };
 
-/// Integrates the equations of one target, element by element. Safe to use from several threads with different rooms;
-/// the numbers do not depend on what a room was used for before.
+/// What the equations consist of; RowIntegrator (equation_rows.h) sums them. Safe to use from several threads with
+/// different rooms; the numbers do not depend on what a room was used for before.
 template <int Dim>
 class Assembler {
  public:
-  /// The arguments must outlive the object. `flux_modes`: see AssemblyRoom::modes.
+  /// The arguments must outlive the object. `flux_modes`: see EquationRows::sums.
   Assembler(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const quadrature::TargetRules<Dim>& rules,
             std::vector<RigidMotion<Dim>> flux_modes);
 
@@ -70,6 +53,8 @@ class Assembler {
   /// Unknown fluxes are stored divided by this (conductivity or shear modulus by the diagonal of the bounding box), so
   /// that the matrix does not depend on units.
   double flux_scale() const { return flux_scale_; }
+  /// Conductivity or shear modulus.
+  double stiffness() const { return stiffness_; }
   double sign() const { return problem_->exterior ? -1.0 : 1.0; }
   const Problem<Dim>& problem() const { return *problem_; }
   const FieldSpace<Dim>& space() const { return *space_; }
@@ -83,15 +68,24 @@ class Assembler {
     return condition_on(element).components[static_cast<std::size_t>(component)].kind == ConditionKind::value;
   }
 
-  /// Sets the sums of a room to zero.
-  void start_target(AssemblyRoom<Dim>& room) const;
-  /// Adds an element to the sums; sets room.block.
-  void add_element(const quadrature::Target<Dim>& target, int element, AssemblyRoom<Dim>& room) const;
-  /// Adds an element to the sums alone.
-  void add_element_sums(const quadrature::Target<Dim>& target, int element, AssemblyRoom<Dim>& room) const;
-  /// With all elements added: the terms in u(x). Adds to the right side, and sets room.block to the coefficients of the
-  /// functions on the point's own element.
-  void add_target_terms(int point, AssemblyRoom<Dim>& room) const;
+  /// Whether the equations contain int U ... dS over the element: for unknown or given fluxes, or flux modes.
+  bool needs_single_layer(int element) const;
+  /// The elements on which a function lives, increasing.
+  std::span<const std::int32_t> elements_of(std::int32_t function) const {
+    const auto a = static_cast<std::size_t>(function);
+    return {elements_.data() + first_element_[a], first_element_[a + 1] - first_element_[a]};
+  }
+
+  /// The terms in u(x) of a point's equations, given int T dS over the whole boundary.
+  struct TargetTerms {
+    /// To be added to the right sides.
+    Eigen::Matrix<double, Dim, 1> right;
+    /// Entry (i, a * components() + c): to be added to the coefficient of component c of the a-th function on the
+    /// point's element in equation i.
+    Eigen::MatrixXd coefficients;
+  };
+  TargetTerms target_terms(int point, const Eigen::Matrix<double, Dim, Dim>& double_layer,
+                           AssemblyRoom<Dim>& room) const;
 
   quadrature::Target<Dim> target(int point) const;
 
@@ -111,23 +105,26 @@ class Assembler {
     NodeBasis<Dim> basis;
     ConditionValues<Dim> values;
   };
-  const KeptNodes* kept_nodes(int element, const quadrature::NodeView<Dim>& nodes, AssemblyRoom<Dim>& room) const;
-  /// Kernels times weights; the single layer is left out where nothing needs it.
-  void weigh_kernels(const quadrature::Target<Dim>& target, int element, const quadrature::NodeView<Dim>& nodes,
-                     AssemblyRoom<Dim>& room) const;
-  void add_sums(int element, const quadrature::NodeView<Dim>& nodes, const ConditionValues<Dim>& values,
-                AssemblyRoom<Dim>& room) const;
-  void fill_integrands(int element, std::size_t count, const ConditionValues<Dim>& values,
-                       AssemblyRoom<Dim>& room) const;
+  const KeptNodes& kept_nodes(int element, const quadrature::NodeView<Dim>& nodes, AssemblyRoom<Dim>& room) const;
+  void list_elements();
 
   const Problem<Dim>* problem_;
   const FieldSpace<Dim>* space_;
   const quadrature::TargetRules<Dim>* rules_;
   std::vector<RigidMotion<Dim>> flux_modes_;
   int components_;
+  double stiffness_;
   double flux_scale_;
-  mutable std::mutex store_mutex_;
-  mutable std::vector<std::unordered_map<int, std::unique_ptr<KeptNodes>>> store_;
+  /// Those of function a: elements_[first_element_[a]], ...
+  std::vector<std::int32_t> elements_;
+  std::vector<std::size_t> first_element_;
+  /// Of each element, by NodeView::kept; guarded by one of the mutexes.
+  struct KeptRule {
+    int number;
+    std::unique_ptr<const KeptNodes> nodes;
+  };
+  mutable std::array<std::mutex, 64> store_mutexes_;
+  mutable std::vector<std::vector<KeptRule>> store_;
 };
 
 }  // namespace isorim::solver

@@ -187,6 +187,32 @@ void add_moments(const FieldSpace<Dim>& space, int element, const NodeBasis<Dim>
                          space.rows.data() + field.row, bernstein_count, result.data(), field.count);
 }
 
+template <int Dim>
+void multiply_by_function(const NodeBasis<Dim>& basis, const std::array<std::int8_t, Dim - 1>& degree,
+                          std::span<const double> coefficients, std::span<double> values) {
+  const auto row_of = [&](std::size_t d, std::size_t q) {
+    return basis.values[d].data() + q * static_cast<std::size_t>(basis.step[d]);
+  };
+  const auto rows = coefficients.size() / static_cast<std::size_t>(degree[0] + 1);
+  for (std::size_t q = 0; q < static_cast<std::size_t>(basis.nodes); ++q) {
+    const auto width = static_cast<std::size_t>(basis.counts[0]);
+    const double* along = row_of(0, basis.scattered ? q : q % width);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < rows; ++k) {
+      double line = 0.0;
+      for (int i = 0; i <= degree[0]; ++i)
+        line += along[i] * coefficients[k * static_cast<std::size_t>(degree[0] + 1) + static_cast<std::size_t>(i)];
+      if constexpr (Dim == 3) line *= row_of(1, basis.scattered ? q : q / width)[k];
+      sum += line;
+    }
+    values[q] *= basis.reciprocal_weight.empty() ? sum : sum * basis.reciprocal_weight[q];
+  }
+}
+
+template void multiply_by_function<2>(const NodeBasis<2>&, const std::array<std::int8_t, 1>&, std::span<const double>,
+                                      std::span<double>);
+template void multiply_by_function<3>(const NodeBasis<3>&, const std::array<std::int8_t, 2>&, std::span<const double>,
+                                      std::span<double>);
 template void fill_node_basis<2>(const FieldSpace<2>&, int, const NodeView<2>&, NodeBasis<2>&, MomentScratch&);
 template void fill_node_basis<3>(const FieldSpace<3>&, int, const NodeView<3>&, NodeBasis<3>&, MomentScratch&);
 template void add_moments<2>(const FieldSpace<2>&, int, const NodeBasis<2>&, std::span<double>, int, MomentScratch&,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -46,5 +47,11 @@ void fill_node_basis(const FieldSpace<Dim>& space, int element, const quadrature
 template <int Dim>
 void add_moments(const FieldSpace<Dim>& space, int element, const NodeBasis<Dim>& basis, std::span<double> integrands,
                  int integrand_count, MomentScratch& scratch, std::span<double> result);
+
+/// values[q] *= sum_j coefficients[j] B_j(node q) (over w there, for rational functions): by the function with these
+/// Bernstein coefficients.
+template <int Dim>
+void multiply_by_function(const NodeBasis<Dim>& basis, const std::array<std::int8_t, Dim - 1>& degree,
+                          std::span<const double> coefficients, std::span<double> values);
 
 }  // namespace isorim::solver

@@ -1,9 +1,11 @@
 #include "solver/bem/compressed_system.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -12,6 +14,7 @@
 
 #include "geometry/errors.h"
 #include "quadrature/parallel.h"
+#include "solver/bem/equation_rows.h"
 #include "solver/bem/kernel_block.h"
 #include "solver/linear/block_tree.h"
 #include "solver/linear/bordered_system.h"
@@ -30,8 +33,7 @@ using Eigen::VectorXd;
 
 /// Scalar rows of a cluster that is not divided any more.
 constexpr int leaf_size = 64;
-/// Times the diagonal of the largest support: one and a half radii from the middle of any element, where the rules for
-/// far targets begin.
+/// Least distance of blocks of low rank, times the diagonal of the largest support.
 constexpr double separation = 0.75;
 /// Of the factors that precondition.
 constexpr double factor_tolerance = 1e-4;
@@ -78,114 +80,90 @@ IndexPlaces index_places(const Assembler<Dim>& assembler) {
   return places;
 }
 
-/// A thread's numbering of some functions; -1 for the others.
-class LocalNumbers {
- public:
-  explicit LocalNumbers(std::size_t count) : number_(count, -1) {}
-  void set(std::span<const std::int32_t> functions) {
-    for (const std::int32_t a : given_) number_[static_cast<std::size_t>(a)] = -1;
-    given_.assign(functions.begin(), functions.end());
-    for (std::size_t k = 0; k < given_.size(); ++k)
-      number_[static_cast<std::size_t>(given_[k])] = static_cast<std::int32_t>(k);
-  }
-  std::int32_t operator[](std::int32_t function) const { return number_[static_cast<std::size_t>(function)]; }
-
- private:
-  std::vector<std::int32_t> number_;
-  std::vector<std::int32_t> given_;
-};
+/// Targets by which interpolated rows are judged.
+constexpr std::size_t most_checks = 3;
 
 template <int Dim>
 struct ThreadRoom {
-  ThreadRoom(const Assembler<Dim>& assembler)
-      : room(assembler.problem()),
-        numbers(static_cast<std::size_t>(assembler.space().function_count())),
-        seen(assembler.space().elements.size(), 0) {}
-  AssemblyRoom<Dim> room;
-  LocalNumbers numbers;
-  std::vector<char> seen;
+  explicit ThreadRoom(const Assembler<Dim>& assembler) : integrator(assembler) {}
+  RowIntegrator<Dim> integrator;
+  EquationRows rows;
+  /// Of which leaf `rows` are the near ones.
+  const std::int32_t* near_leaf = nullptr;
 };
 
-/// Elements on which any of the functions lives, increasing.
-template <int Dim>
-std::vector<int> elements_under(const std::vector<std::vector<int>>& elements_of,
-                                std::span<const std::int32_t> functions, ThreadRoom<Dim>& room) {
-  std::vector<int> elements;
-  for (const std::int32_t a : functions) {
-    for (const int e : elements_of[static_cast<std::size_t>(a)]) {
-      if (std::exchange(room.seen[static_cast<std::size_t>(e)], char{1}) == 0) elements.push_back(e);
-    }
+/// The rows of a block of low rank that are integrated, and those among them that are there to judge the others.
+struct ChosenTargets {
+  /// Places among the block's targets.
+  std::vector<std::int32_t> places;
+  std::size_t checks = 0;
+};
+
+/// The targets of the rows, and up to most_checks others spread over the rest.
+ChosenTargets chosen_targets(const std::vector<Index>& rows, Index components, std::size_t target_count) {
+  ChosenTargets chosen;
+  std::vector<char> is_chosen(target_count, 0);
+  const auto choose = [&](std::size_t place) {
+    if (std::exchange(is_chosen[place], char{1}) == 0) chosen.places.push_back(static_cast<std::int32_t>(place));
+  };
+  for (const Index row : rows) choose(static_cast<std::size_t>(row / components));
+  const std::size_t of_rows = chosen.places.size();
+  for (std::size_t check = 0; check < most_checks; ++check) {
+    std::size_t place = (2 * check + 1) * target_count / (2 * most_checks);
+    while (place < target_count && is_chosen[place] != 0) ++place;
+    if (place < target_count) choose(place);
   }
-  for (const int e : elements) room.seen[static_cast<std::size_t>(e)] = 0;
-  std::sort(elements.begin(), elements.end());
-  return elements;
+  chosen.checks = chosen.places.size() - of_rows;
+  return chosen;
 }
 
-/// Makes near blocks, right sides and side columns first, row cluster by row cluster; then the blocks on demand.
+/// Integrates near blocks as they are; of far ones only those rows from which the others follow. Sums over the whole
+/// boundary come about block by block.
 template <int Dim>
 class CollocationSource final : public MatrixSource {
  public:
-  CollocationSource(const Assembler<Dim>& assembler, const SideConditions<Dim>& sides, const BlockTree& tree,
-                    const SolveOptions& options);
+  CollocationSource(const Assembler<Dim>& assembler, const BlockTree& tree, int threads);
 
   void dense_block(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns, int thread,
                    Eigen::Ref<MatrixXd> block) const override;
   LowRank low_rank_block(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
                          const Accuracy& accuracy, int thread) const override;
 
-  MatrixXd columns;
-  VectorXd right;
+  /// EquationRows::sums over the whole boundary, after all blocks have been made.
+  MatrixXd sums() const;
 
  private:
-  struct NearBlock {
-    std::span<const std::int32_t> columns;
-    MatrixXd entries;
-  };
-  /// Of one leaf of the rows.
-  struct NearRows {
-    std::span<const std::int32_t> rows;
-    std::vector<NearBlock> blocks;
-  };
+  using RowKey = std::pair<const std::int32_t*, std::size_t>;
+  static RowKey key(std::span<const std::int32_t> rows) { return {rows.data(), rows.size()}; }
   ThreadRoom<Dim>& room(int thread) const;
-  void fill_rows(NearRows& near, ThreadRoom<Dim>& room);
-  void fill_point(NearRows& near, std::size_t row, const std::vector<int>& elements, ThreadRoom<Dim>& room);
-  void scatter(NearRows& near, std::size_t row, int element, ThreadRoom<Dim>& room) const;
-  MatrixXd contract(const KernelBlock<Dim>& kernel, const MatrixXd& nodes, std::span<const std::int32_t> columns,
-                    ThreadRoom<Dim>& room) const;
+  void integrate_near_rows(std::span<const std::int32_t> rows, ThreadRoom<Dim>& room) const;
+  std::optional<LowRank> interpolated(std::span<const std::int32_t> rows, const RowInterpolation& interpolation,
+                                      const Accuracy& accuracy, double sum_error, ThreadRoom<Dim>& room) const;
+  void add_sums(std::span<const std::int32_t> rows, const MatrixXd& sums) const;
 
   const Assembler<Dim>* assembler_;
-  const SideConditions<Dim>* sides_;
-  std::vector<std::vector<int>> elements_of_;
-  std::vector<NearRows> near_;
-  /// Where the rows of a near block stand in near_.
-  std::map<const std::int32_t*, std::size_t> place_of_rows_;
+  SourcePoints<Dim> sources_;
+  /// All near functions of each leaf of the rows.
+  std::map<const std::int32_t*, std::vector<std::int32_t>> near_functions_;
+  /// What the blocks of each cluster of rows have given.
+  mutable std::map<RowKey, MatrixXd> sums_;
   mutable std::vector<std::unique_ptr<ThreadRoom<Dim>>> rooms_;
 };
 
 template <int Dim>
-CollocationSource<Dim>::CollocationSource(const Assembler<Dim>& assembler, const SideConditions<Dim>& sides,
-                                          const BlockTree& tree, const SolveOptions& options)
-    : columns(MatrixXd::Zero(assembler.size(), static_cast<Index>(sides.count()))),
-      right(VectorXd::Zero(assembler.size())),
-      assembler_(&assembler),
-      sides_(&sides),
-      elements_of_(static_cast<std::size_t>(assembler.space().function_count())),
-      rooms_(static_cast<std::size_t>(quadrature::thread_count(options.threads))) {
-  for (int e = 0; e < static_cast<int>(assembler.space().elements.size()); ++e) {
-    for (const std::int32_t a : assembler.space().functions_of(e))
-      elements_of_[static_cast<std::size_t>(a)].push_back(e);
-  }
+CollocationSource<Dim>::CollocationSource(const Assembler<Dim>& assembler, const BlockTree& tree, int threads)
+    : assembler_(&assembler),
+      sources_(assembler.space(), threads),
+      rooms_(static_cast<std::size_t>(quadrature::thread_count(threads))) {
   for (const Block& block : tree.blocks()) {
-    if (block.kind != BlockKind::dense) continue;
+    if (block.kind == BlockKind::subdivided) continue;
     const auto rows = tree.rows().indices(tree.row_cluster(block));
-    const auto [place, is_new] = place_of_rows_.try_emplace(rows.data(), near_.size());
-    if (is_new) near_.push_back({rows, {}});
-    near_[place->second].blocks.push_back({tree.columns().indices(tree.column_cluster(block)), {}});
+    sums_.try_emplace(key(rows));
+    if (block.kind != BlockKind::dense) continue;
+    const auto columns = tree.columns().indices(tree.column_cluster(block));
+    std::vector<std::int32_t>& functions = near_functions_[rows.data()];
+    functions.insert(functions.end(), columns.begin(), columns.end());
   }
-  quadrature::parallel_for(
-      near_.size(), options.threads, [&](std::size_t task, int thread) { fill_rows(near_[task], room(thread)); },
-      options.progress);
-  right += assembler.load_potentials(options.tolerance, options.threads).reshaped();
 }
 
 template <int Dim>
@@ -196,129 +174,145 @@ ThreadRoom<Dim>& CollocationSource<Dim>::room(int thread) const {
 }
 
 template <int Dim>
-void CollocationSource<Dim>::fill_rows(NearRows& near, ThreadRoom<Dim>& room) {
-  const Index components = assembler_->components();
-  std::vector<std::int32_t> functions;
-  for (NearBlock& block : near.blocks) {
-    functions.insert(functions.end(), block.columns.begin(), block.columns.end());
-    block.entries.setZero(static_cast<Index>(near.rows.size()) * components,
-                          static_cast<Index>(block.columns.size()) * components);
-  }
-  room.numbers.set(functions);
-  const std::vector<int> elements = elements_under<Dim>(elements_of_, functions, room);
-  for (std::size_t row = 0; row < near.rows.size(); ++row) fill_point(near, row, elements, room);
+void CollocationSource<Dim>::add_sums(std::span<const std::int32_t> rows, const MatrixXd& sums) const {
+  MatrixXd& total = sums_.at(key(rows));
+  if (total.size() == 0)
+    total = sums;
+  else
+    total += sums;
 }
 
 template <int Dim>
-void CollocationSource<Dim>::fill_point(NearRows& near, std::size_t row, const std::vector<int>& elements,
-                                        ThreadRoom<Dim>& room) {
-  const std::int32_t point = near.rows[row];
-  const quadrature::Target<Dim> target = assembler_->target(point);
-  const auto count = static_cast<int>(assembler_->space().elements.size());
-  assembler_->start_target(room.room);
-  auto next = elements.begin();
-  for (int e = 0; e < count; ++e) {
-    if (next != elements.end() && *next == e) {
-      ++next;
-      assembler_->add_element(target, e, room.room);
-      scatter(near, row, e, room);
-    } else {
-      assembler_->add_element_sums(target, e, room.room);
-    }
-  }
-  assembler_->add_target_terms(point, room.room);
-  scatter(near, row, target.element, room);
+MatrixXd CollocationSource<Dim>::sums() const {
   const Index components = assembler_->components();
-  for (Index i = 0; i < components; ++i) {
-    right[point * components + i] = room.room.right[i];
-    for (Index m = 0; m < room.room.modes.cols(); ++m)
-      columns(point * components + i, m) = assembler_->flux_scale() * room.room.modes(i, m);
-    for (std::size_t k = 0; k < sides_->constants.size(); ++k)
-      columns(point * components + i, static_cast<Index>(k)) = -sides_->constants[k][i];
+  MatrixXd total = MatrixXd::Zero(assembler_->size(), sum_count(*assembler_));
+  for (const auto& [rows, part] : sums_) {
+    if (part.size() == 0) continue;
+    for (std::size_t k = 0; k < rows.second; ++k)
+      total.middleRows(rows.first[k] * components, components) +=
+          part.middleRows(static_cast<Index>(k) * components, components);
   }
+  return total;
 }
 
-/// room.room.block to the near blocks of the row; functions that are far are left to their own blocks.
+/// The blocks of a leaf come one after the other: the first integrates all of them.
 template <int Dim>
-void CollocationSource<Dim>::scatter(NearRows& near, std::size_t row, int element, ThreadRoom<Dim>& room) const {
-  const std::span<const std::int32_t> functions = assembler_->space().functions_of(element);
-  const Index components = assembler_->components();
-  const auto count = static_cast<Index>(functions.size());
-  for (Index a = 0; a < count; ++a) {
-    auto number = static_cast<std::int64_t>(room.numbers[functions[static_cast<std::size_t>(a)]]);
-    if (number < 0) continue;
-    auto block = near.blocks.begin();
-    while (number >= static_cast<std::int64_t>(block->columns.size())) {
-      number -= static_cast<std::int64_t>(block->columns.size());
-      ++block;
-    }
-    for (Index i = 0; i < components; ++i) {
-      for (Index c = 0; c < components; ++c) {
-        block->entries(static_cast<Index>(row) * components + i, number * components + c) +=
-            room.room.block[static_cast<std::size_t>((i * components + c) * count + a)];
-      }
-    }
-  }
+void CollocationSource<Dim>::integrate_near_rows(std::span<const std::int32_t> rows, ThreadRoom<Dim>& room) const {
+  if (std::exchange(room.near_leaf, rows.data()) == rows.data()) return;
+  room.integrator.set_functions(near_functions_.at(rows.data()));
+  room.integrator.integrate(rows, room.rows);
+  add_sums(rows, room.rows.sums);
 }
 
 template <int Dim>
-void CollocationSource<Dim>::dense_block(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns_,
-                                         int /*thread*/, Eigen::Ref<MatrixXd> block) const {
-  const NearRows& near = near_[place_of_rows_.at(rows.data())];
-  const auto found = std::find_if(near.blocks.begin(), near.blocks.end(), [&](const NearBlock& candidate) {
-    return candidate.columns.data() == columns_.data();
-  });
-  block = found->entries;
+void CollocationSource<Dim>::dense_block(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
+                                         int thread, Eigen::Ref<MatrixXd> block) const {
+  ThreadRoom<Dim>& own = room(thread);
+  integrate_near_rows(rows, own);
+  const std::vector<std::int32_t>& functions = near_functions_.at(rows.data());
+  const auto found = std::search(functions.begin(), functions.end(), columns.begin(), columns.end());
+  block = own.rows.coefficients.middleCols((found - functions.begin()) * assembler_->components(), block.cols());
 }
 
 template <int Dim>
 LowRank CollocationSource<Dim>::low_rank_block(std::span<const std::int32_t> rows,
-                                               std::span<const std::int32_t> columns_, const Accuracy& accuracy,
+                                               std::span<const std::int32_t> columns, const Accuracy& accuracy,
                                                int thread) const {
   ThreadRoom<Dim>& own = room(thread);
-  const std::vector<int> elements = elements_under<Dim>(elements_of_, columns_, own);
-  KernelBlock<Dim> kernel(*assembler_, rows, elements, own.room);
-  LowRank result = cross_approximation(kernel, accuracy);
-  result.v = contract(kernel, result.v, columns_, own);
-  return result;
+  own.near_leaf = nullptr;
+  own.integrator.set_functions(columns);
+  KernelBlock<Dim> kernel(*assembler_, sources_, rows, own.integrator.elements());
+  const RowInterpolation interpolation = interpolate_rows(kernel, {accuracy.relative, 0.0});
+  const double sum_error = accuracy.relative * kernel.double_layer_bound();
+  if (std::optional<LowRank> found = interpolated(rows, interpolation, accuracy, sum_error, own))
+    return *std::move(found);
+  own.integrator.integrate(rows, own.rows);
+  add_sums(rows, own.rows.sums);
+  const Index row_count = own.rows.coefficients.rows();
+  return {MatrixXd::Identity(row_count, row_count), own.rows.coefficients.transpose()};
 }
 
-/// From nodes to functions: row (function, component) is the sum over its nodes of the function's value times the rows
-/// (node, component).
+/// None if all rows are wanted, or if those at the checks do not follow from the others within the accuracy.
 template <int Dim>
-MatrixXd CollocationSource<Dim>::contract(const KernelBlock<Dim>& kernel, const MatrixXd& nodes,
-                                          std::span<const std::int32_t> columns_, ThreadRoom<Dim>& room) const {
+std::optional<LowRank> CollocationSource<Dim>::interpolated(std::span<const std::int32_t> rows,
+                                                            const RowInterpolation& interpolation,
+                                                            const Accuracy& accuracy, double sum_error,
+                                                            ThreadRoom<Dim>& room) const {
   const Index components = assembler_->components();
-  const Index rank = nodes.cols();
-  MatrixXd result = MatrixXd::Zero(static_cast<Index>(columns_.size()) * components, rank);
-  room.numbers.set(columns_);
-  std::vector<double> integrands;
-  std::vector<double> moments;
-  for (const auto& part : kernel.parts()) {
-    const std::span<const std::int32_t> functions = assembler_->space().functions_of(part.element);
-    const auto first = static_cast<Index>(part.first);
-    const auto count = static_cast<Index>(part.count);
-    integrands.resize(static_cast<std::size_t>(rank * components * count));
-    for (Index k = 0; k < rank; ++k) {
-      for (Index c = 0; c < components; ++c) {
-        double* target = integrands.data() + (k * components + c) * count;
-        for (Index q = 0; q < count; ++q) target[q] = nodes((first + q) * components + c, k);
-      }
-    }
-    moments.assign(static_cast<std::size_t>(rank * components) * functions.size(), 0.0);
-    add_moments<Dim>(assembler_->space(), part.element, *part.basis, integrands, static_cast<int>(rank * components),
-                     room.room.scratch, moments);
-    for (std::size_t a = 0; a < functions.size(); ++a) {
-      const std::int32_t number = room.numbers[functions[a]];
-      if (number < 0) continue;
-      for (Index k = 0; k < rank; ++k) {
-        for (Index c = 0; c < components; ++c)
-          result(number * components + c, k) +=
-              moments[static_cast<std::size_t>(k * components + c) * functions.size() + a];
-      }
+  const ChosenTargets chosen = chosen_targets(interpolation.rows, components, rows.size());
+  if (chosen.places.size() == rows.size()) return std::nullopt;
+  std::vector<std::int32_t> points;
+  std::vector<Index> place_of(rows.size(), -1);
+  for (const std::int32_t place : chosen.places) {
+    place_of[static_cast<std::size_t>(place)] = static_cast<Index>(points.size());
+    points.push_back(rows[static_cast<std::size_t>(place)]);
+  }
+  room.integrator.integrate(points, room.rows);
+  std::vector<Index> pivots;
+  for (const Index row : interpolation.rows)
+    pivots.push_back(place_of[static_cast<std::size_t>(row / components)] * components + row % components);
+  const MatrixXd pivot_rows = room.rows.coefficients(pivots, Eigen::all);
+  const MatrixXd pivot_sums = room.rows.sums(pivots, Eigen::all);
+
+  double squared_norm = 0.0;
+  double squared_error = 0.0;
+  double squared_sum_error = 0.0;
+  for (std::size_t k = points.size() - chosen.checks; k < points.size(); ++k) {
+    const auto here = interpolation.weights.middleRows(chosen.places[k] * components, components);
+    const auto exact = room.rows.coefficients.middleRows(static_cast<Index>(k) * components, components);
+    const auto exact_sums = room.rows.sums.middleRows(static_cast<Index>(k) * components, components);
+    squared_norm += exact.squaredNorm();
+    squared_error += (exact - here * pivot_rows).squaredNorm();
+    squared_sum_error += (exact_sums - here * pivot_sums).leftCols(components).squaredNorm();
+  }
+  const double rows_per_check = static_cast<double>(rows.size()) / static_cast<double>(chosen.checks);
+  const double allowed = accuracy.allowed(std::sqrt(squared_norm * rows_per_check));
+  if (!(std::sqrt(squared_error * rows_per_check) <= allowed)) return std::nullopt;
+  if (!(std::sqrt(squared_sum_error / static_cast<double>(chosen.checks)) <= sum_error)) return std::nullopt;
+  add_sums(rows, interpolation.weights * pivot_sums);
+  return LowRank{interpolation.weights, pivot_rows.transpose()};
+}
+
+/// |D| of the terms in u(x), about: half the functions' values where they are unknown.
+template <int Dim>
+double norm_of_target_terms(const Assembler<Dim>& assembler) {
+  const FieldSpace<Dim>& space = assembler.space();
+  std::vector<double> basis;
+  double squared = 0.0;
+  for (const CollocationPoint<Dim>& point : space.points) {
+    basis.resize(space.functions_of(point.element).size());
+    basis_values(space, point.element, point.place, std::span<double>(basis));
+    for (int c = 0; c < assembler.components(); ++c) {
+      if (assembler.is_flux_unknown(point.element, c)) continue;
+      for (const double value : basis) squared += 0.25 * value * value;
     }
   }
-  return result;
+  return std::sqrt(squared);
+}
+
+/// What needs the sums over the whole boundary: terms in u(x), right sides and the columns of the side conditions.
+template <int Dim>
+void add_target_terms(const Assembler<Dim>& assembler, const SideConditions<Dim>& sides, const MatrixXd& sums,
+                      HierarchicalMatrix& matrix, CompressedSystem& system) {
+  const Index components = assembler.components();
+  const auto mode_count = static_cast<Index>(assembler.flux_modes().size());
+  AssemblyRoom<Dim> room(assembler.problem());
+  for (std::int32_t point = 0; point < assembler.space().function_count(); ++point) {
+    const auto of_point = sums.middleRows(point * components, components);
+    Eigen::Matrix<double, Dim, Dim> double_layer = Eigen::Matrix<double, Dim, Dim>::Zero();
+    double_layer.topLeftCorner(components, components) = of_point.leftCols(components);
+    const auto terms = assembler.target_terms(point, double_layer, room);
+    const auto functions = assembler.space().functions_of(assembler.target(point).element);
+    for (std::size_t a = 0; a < functions.size(); ++a)
+      matrix.add_entries(point, functions[a],
+                         terms.coefficients.middleCols(static_cast<Index>(a) * components, components));
+    system.right.segment(point * components, components) += of_point.col(components) + terms.right.head(components);
+    system.columns.middleRows(point * components, components).leftCols(mode_count) =
+        assembler.flux_scale() * of_point.rightCols(mode_count);
+    for (std::size_t k = 0; k < sides.constants.size(); ++k)
+      system.columns.col(static_cast<Index>(k)).segment(point * components, components) =
+          -sides.constants[k].head(components);
+  }
 }
 
 }  // namespace
@@ -330,14 +324,22 @@ CompressedSystem assemble_compressed(const Assembler<Dim>& assembler, const Side
   BlockTreeOptions tree_options;
   tree_options.separation = separation;
   const auto tree = std::make_shared<const BlockTree>(clusters, clusters, tree_options);
-  CollocationSource<Dim> source(assembler, sides, *tree, options);
+  const CollocationSource<Dim> source(assembler, *tree, options.threads);
+  AssemblyOptions assembly_options;
+  assembly_options.tolerance = options.tolerance;
+  assembly_options.threads = options.threads;
+  assembly_options.norm_to_come = norm_of_target_terms(assembler);
+  assembly_options.progress = options.progress;
+  const auto matrix = std::make_shared<HierarchicalMatrix>(assemble(tree, source, assembly_options));
+
   CompressedSystem system;
-  system.matrix = std::make_shared<const HierarchicalMatrix>(
-      assemble(tree, source, {options.tolerance, options.threads, options.progress}));
-  system.columns = std::move(source.columns);
+  const auto side_count = static_cast<Index>(sides.count());
+  system.columns = MatrixXd::Zero(assembler.size(), side_count);
   system.rows = sides.rows;
-  system.right.resize(assembler.size() + static_cast<Index>(sides.count()));
-  system.right << source.right, sides.right;
+  system.right.resize(assembler.size() + side_count);
+  system.right << assembler.load_potentials(options.tolerance, options.threads).reshaped(), sides.right;
+  add_target_terms(assembler, sides, source.sums(), *matrix, system);
+  system.matrix = matrix;
   return system;
 }
 

@@ -1,7 +1,9 @@
 #include "solver/bem/dense_system.h"
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -9,6 +11,7 @@
 
 #include "geometry/errors.h"
 #include "quadrature/parallel.h"
+#include "solver/linear/cluster_tree.h"
 #include "solver/linear/dense_lu.h"
 
 namespace isorim::solver {
@@ -18,40 +21,51 @@ namespace {
 /// Below this the solution has no correct digit.
 constexpr double least_reciprocal_condition = 1e-15;
 
+/// Targets whose rows are integrated together.
+constexpr int targets_at_a_time = 32;
+
 template <int Dim>
-void scatter(const Assembler<Dim>& assembler, int element, const std::vector<double>& block, int point,
-             RowMatrix& matrix) {
-  const std::span<const std::int32_t> functions = assembler.space().functions_of(element);
-  const int components = assembler.components();
-  const double* source = block.data();
-  for (int i = 0; i < components; ++i) {
-    double* row = matrix.data() + (static_cast<Eigen::Index>(point) * components + i) * matrix.cols();
-    for (int c = 0; c < components; ++c) {
-      for (const std::int32_t function : functions) row[function * components + c] += *source++;
-    }
-  }
+std::shared_ptr<const ClusterTree> target_clusters(const FieldSpace<Dim>& space) {
+  IndexPlaces places;
+  places.points = Eigen::Matrix3Xd::Zero(3, space.function_count());
+  for (Eigen::Index i = 0; i < space.function_count(); ++i)
+    places.points.col(i).template head<Dim>() = space.points[static_cast<std::size_t>(i)].position;
+  places.lower = places.upper = places.points;
+  return std::make_shared<const ClusterTree>(places, targets_at_a_time);
 }
 
 template <int Dim>
-void assemble_point(const Assembler<Dim>& assembler, const SideConditions<Dim>& sides, int point,
-                    AssemblyRoom<Dim>& room, DenseSystem& system) {
-  const quadrature::Target<Dim> target = assembler.target(point);
-  const int components = assembler.components();
-  const auto elements = static_cast<int>(assembler.space().elements.size());
-  assembler.start_target(room);
-  for (int e = 0; e < elements; ++e) {
-    assembler.add_element(target, e, room);
-    scatter(assembler, e, room.block, point, system.matrix);
+struct ThreadRoom {
+  ThreadRoom(const Assembler<Dim>& assembler, std::span<const std::int32_t> functions) : integrator(assembler) {
+    integrator.set_functions(functions);
   }
-  assembler.add_target_terms(point, room);
-  scatter(assembler, target.element, room.block, point, system.matrix);
-  for (int i = 0; i < components; ++i) {
-    const Eigen::Index row = static_cast<Eigen::Index>(point) * components + i;
-    system.right[row] = room.right[i];
-    for (Eigen::Index m = 0; m < room.modes.cols(); ++m)
-      system.matrix(row, assembler.size() + m) = assembler.flux_scale() * room.modes(i, m);
+  RowIntegrator<Dim> integrator;
+  EquationRows rows;
+};
+
+/// The rows of some points, whose integrals stand in `rows`.
+template <int Dim>
+void set_rows(const Assembler<Dim>& assembler, const SideConditions<Dim>& sides, std::span<const std::int32_t> points,
+              ThreadRoom<Dim>& room, DenseSystem& system) {
+  const Eigen::Index components = assembler.components();
+  const auto mode_count = static_cast<Eigen::Index>(assembler.flux_modes().size());
+  for (std::size_t t = 0; t < points.size(); ++t) {
+    const std::int32_t point = points[t];
+    const auto sums = room.rows.sums.middleRows(static_cast<Eigen::Index>(t) * components, components);
+    auto rows = system.matrix.middleRows(point * components, components);
+    rows.leftCols(assembler.size()) =
+        room.rows.coefficients.middleRows(static_cast<Eigen::Index>(t) * components, components);
+    Eigen::Matrix<double, Dim, Dim> double_layer = Eigen::Matrix<double, Dim, Dim>::Zero();
+    double_layer.topLeftCorner(components, components) = sums.leftCols(components);
+    const auto terms = assembler.target_terms(point, double_layer, room.integrator.room());
+    const auto functions = assembler.space().functions_of(assembler.target(point).element);
+    for (std::size_t a = 0; a < functions.size(); ++a)
+      rows.middleCols(functions[a] * components, components) +=
+          terms.coefficients.middleCols(static_cast<Eigen::Index>(a) * components, components);
+    system.right.segment(point * components, components) = sums.col(components) + terms.right.head(components);
+    rows.middleCols(assembler.size(), mode_count) = assembler.flux_scale() * sums.rightCols(mode_count);
     for (std::size_t k = 0; k < sides.constants.size(); ++k)
-      system.matrix(row, assembler.size() + static_cast<Eigen::Index>(k)) = -sides.constants[k][i];
+      rows.col(assembler.size() + static_cast<Eigen::Index>(k)) = -sides.constants[k].head(components);
   }
 }
 
@@ -63,14 +77,21 @@ DenseSystem assemble_dense(const Assembler<Dim>& assembler, const SideConditions
   const auto extra = static_cast<Eigen::Index>(sides.count());
   const Eigen::Index size = assembler.size() + extra;
   DenseSystem system{RowMatrix::Zero(size, size), Eigen::VectorXd::Zero(size)};
-  std::vector<std::unique_ptr<AssemblyRoom<Dim>>> rooms(
+  std::vector<std::int32_t> all(static_cast<std::size_t>(assembler.space().function_count()));
+  std::iota(all.begin(), all.end(), 0);
+  const auto clusters = target_clusters(assembler.space());
+  std::vector<std::span<const std::int32_t>> groups;
+  for (const Cluster& cluster : clusters->clusters())
+    if (cluster.is_leaf()) groups.push_back(clusters->indices(cluster));
+  std::vector<std::unique_ptr<ThreadRoom<Dim>>> rooms(
       static_cast<std::size_t>(quadrature::thread_count(options.threads)));
   quadrature::parallel_for(
-      static_cast<std::size_t>(assembler.space().function_count()), options.threads,
-      [&](std::size_t point, int thread) {
+      groups.size(), options.threads,
+      [&](std::size_t task, int thread) {
         auto& room = rooms[static_cast<std::size_t>(thread)];
-        if (!room) room = std::make_unique<AssemblyRoom<Dim>>(assembler.problem());
-        assemble_point(assembler, sides, static_cast<int>(point), *room, system);
+        if (!room) room = std::make_unique<ThreadRoom<Dim>>(assembler, all);
+        room->integrator.integrate(groups[task], room->rows);
+        set_rows(assembler, sides, groups[task], *room, system);
       },
       options.progress);
   const Eigen::MatrixXd loads = assembler.load_potentials(options.tolerance, options.threads);

@@ -5,12 +5,11 @@
 #include <Eigen/Core>
 
 #include "solver/bem/assembly.h"
+#include "solver/bem/equation_rows.h"
 #include "solver/bem/side_conditions.h"
 #include "solver/bem/solve.h"
 
 namespace isorim::solver {
-
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// All equations with every coefficient stored, those of the side conditions last.
 struct DenseSystem {
@@ -18,8 +17,8 @@ struct DenseSystem {
   Eigen::VectorXd right;
 };
 
-/// One target after the other, in parallel; the numbers do not depend on how many threads there are. Cost: size times
-/// the elements' nodes; memory 8 size^2 bytes.
+/// Targets that lie together at a time, in parallel; the numbers do not depend on how many threads there are. Cost:
+/// size times the elements' nodes; memory 8 size^2 bytes.
 template <int Dim>
 DenseSystem assemble_dense(const Assembler<Dim>& assembler, const SideConditions<Dim>& sides,
                            const SolveOptions& options);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <unordered_set>
@@ -75,22 +76,42 @@ class CrossApproximation {
         used_target_(static_cast<std::size_t>(source.targets()), 0) {}
 
   LowRank run() {
-    // Half of all rows or columns: the rest costs little more than the crosses did, and is certain.
     const Index smaller = std::min(source_.targets() * rows_, source_.nodes() * columns_);
-    if (smaller <= 12) return every_entry();
-    int small_steps = 0;
-    for (std::optional<Index> target = source_.targets() / 2; target;) {
-      if (2 * u_.count() >= smaller) return every_entry();
-      small_steps = add_crosses(*target) > accuracy_.allowed(norm()) ? 0 : small_steps + 1;
-      // One small step may be chance (a target that coincides with a used one): the next goes where samples are worst.
-      target = small_steps == 0 ? next_target() : target_of_largest_residual(small_steps > 1);
-    }
-    if (exhausted_) return every_entry();
+    if (!find_crosses(smaller)) return every_entry();
     return {u_.columns(), v_.columns()};
+  }
+
+  RowInterpolation run_for_rows() {
+    const Index row_count = source_.targets() * rows_;
+    if (!find_crosses(row_count)) {
+      RowInterpolation all{std::vector<Index>(static_cast<std::size_t>(row_count)),
+                           MatrixXd::Identity(row_count, row_count)};
+      std::iota(all.rows.begin(), all.rows.end(), Index{0});
+      return all;
+    }
+    MatrixXd transposed = u_.columns().transpose();
+    const MatrixXd triangle = transposed(Eigen::all, pivot_rows_);
+    // Below a pivot's row the later columns vanish: exactly where the row was taken up, else but for rounding.
+    triangle.template triangularView<Eigen::Upper>().solveInPlace(transposed);
+    return {pivot_rows_, transposed.transpose()};
   }
 
  private:
   double norm() const { return std::sqrt(std::max(0.0, squared_norm_)); }
+
+  /// False if all entries had better be taken: the rank comes to half of `most`, or the samples are not satisfied.
+  bool find_crosses(Index most) {
+    // Half of all rows or columns: the rest costs little more than the crosses did, and is certain.
+    if (most <= 12) return false;
+    int small_steps = 0;
+    for (std::optional<Index> target = source_.targets() / 2; target;) {
+      if (2 * u_.count() >= most) return false;
+      small_steps = add_crosses(*target) > accuracy_.allowed(norm()) ? 0 : small_steps + 1;
+      // One small step may be chance (a target that coincides with a used one): the next goes where samples are worst.
+      target = small_steps == 0 ? next_target() : target_of_largest_residual(small_steps > 1);
+    }
+    return !exhausted_;
+  }
 
   Sample row_sample(Index target) {
     Sample sample{target, MatrixXd(source_.nodes() * columns_, rows_), 0};
@@ -146,6 +167,7 @@ class CrossApproximation {
         continue;
       }
       squared_step += append(nodes.values.col(column % columns_), row.values.col(component) / entry);
+      pivot_rows_.push_back(row.index * rows_ + component);
       ++cross;
     }
     used_target_[static_cast<std::size_t>(row.index)] = 1;
@@ -275,6 +297,8 @@ class CrossApproximation {
   Index columns_;
   Columns u_;
   Columns v_;
+  /// The scalar row of each cross.
+  std::vector<Index> pivot_rows_;
   std::vector<char> used_target_;
   std::vector<Sample> row_samples_;
   std::vector<Sample> column_samples_;
@@ -291,6 +315,12 @@ LowRank cross_approximation(CrossSource& source, const Accuracy& accuracy) {
     return {MatrixXd(source.targets() * source.row_components(), 0),
             MatrixXd(source.nodes() * source.column_components(), 0)};
   return CrossApproximation(source, accuracy).run();
+}
+
+RowInterpolation interpolate_rows(CrossSource& source, const Accuracy& accuracy) {
+  if (source.targets() == 0 || source.nodes() == 0)
+    return {{}, MatrixXd(source.targets() * source.row_components(), 0)};
+  return CrossApproximation(source, accuracy).run_for_rows();
 }
 
 }  // namespace isorim::solver

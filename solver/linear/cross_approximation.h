@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -46,5 +47,19 @@ class CrossSource {
 /// Cost: about (rank + checks) rows and columns of the source and rank^2 (rows + columns) operations. Neither factor is
 /// orthogonal nor is the rank minimal: see truncate(). Throws NumericalError for an entry that is not finite.
 LowRank cross_approximation(CrossSource& source, const Accuracy& accuracy);
+
+/// All rows of a matrix from a few of them: A is about weights A(rows, :).
+struct RowInterpolation {
+  /// Scalar rows, in the order of the columns of `weights`.
+  std::vector<Eigen::Index> rows;
+  /// The identity at `rows`, but for rounding over the accuracy.
+  Eigen::MatrixXd weights;
+};
+
+/// The rows through which the crosses go, and how the others follow from them: A is about u v^T, so A(rows, :) about
+/// u(rows, :) v^T, and weights = u u(rows, :)^-1 (the row interpolation of hybrid cross approximation: Boerm &
+/// Grasedyck, Numerische Mathematik 101, 2005). The weights serve any columns that depend on the rows as the source's
+/// do, the source's being a fine enough sample of them; all rows come back if their number is not much above the rank.
+RowInterpolation interpolate_rows(CrossSource& source, const Accuracy& accuracy);
 
 }  // namespace isorim::solver

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -213,16 +214,24 @@ void HierarchicalMatrix::scale_columns(const Eigen::Ref<const VectorXd>& factors
 
 namespace {
 
-/// The numbers of the leaves of one kind, the largest first, so that no thread is left with a large one at the end.
-std::vector<int> leaves_by_size(const BlockTree& tree, BlockKind kind) {
-  std::vector<int> numbers;
-  for (int number = 0; number < static_cast<int>(tree.blocks().size()); ++number)
-    if (tree.block(number).kind == kind) numbers.push_back(number);
-  const auto size = [&](int number) {
-    return tree.row_count(tree.block(number)) + tree.column_count(tree.block(number));
-  };
-  std::stable_sort(numbers.begin(), numbers.end(), [&](int a, int b) { return size(a) > size(b); });
-  return numbers;
+/// The leaves of one kind, those with the same rows together in the order of the tree; the largest groups first, so
+/// that no thread is left with a large one at the end.
+std::vector<std::vector<int>> leaves_by_rows(const BlockTree& tree, BlockKind kind) {
+  std::vector<std::vector<int>> of_cluster(tree.rows().clusters().size());
+  std::vector<Index> size(of_cluster.size(), 0);
+  for (int number = 0; number < static_cast<int>(tree.blocks().size()); ++number) {
+    const Block& block = tree.block(number);
+    if (block.kind != kind) continue;
+    of_cluster[static_cast<std::size_t>(block.row)].push_back(number);
+    size[static_cast<std::size_t>(block.row)] += tree.row_count(block) + tree.column_count(block);
+  }
+  std::vector<std::size_t> order(of_cluster.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return size[a] > size[b]; });
+  std::vector<std::vector<int>> groups;
+  for (const std::size_t cluster : order)
+    if (!of_cluster[cluster].empty()) groups.push_back(std::move(of_cluster[cluster]));
+  return groups;
 }
 
 /// Tasks of assemble().
@@ -266,25 +275,31 @@ HierarchicalMatrix assemble(std::shared_ptr<const BlockTree> tree, const MatrixS
         fmt::format("the tolerance of the compression must lie between 0 and 1, not {}", options.tolerance));
   HierarchicalMatrix matrix(std::move(tree), options.threads);
   const Filling filling{matrix, source};
-  const std::vector<int> near = leaves_by_size(matrix.tree(), BlockKind::dense);
-  const std::vector<int> far = leaves_by_size(matrix.tree(), BlockKind::low_rank);
+  const std::vector<std::vector<int>> near = leaves_by_rows(matrix.tree(), BlockKind::dense);
+  const std::vector<std::vector<int>> far = leaves_by_rows(matrix.tree(), BlockKind::low_rank);
   const double near_share = static_cast<double>(near.size()) / static_cast<double>(near.size() + far.size());
   const auto part_of_progress = [&](double first, double share) {
     return options.progress ? [&, first, share](double done) { options.progress(first + share * done); }
                             : std::function<void(double)>{};
   };
   quadrature::parallel_for(
-      near.size(), options.threads, [&](std::size_t task, int thread) { filling.dense(near[task], thread); },
+      near.size(), options.threads,
+      [&](std::size_t task, int thread) {
+        for (const int number : near[task]) filling.dense(number, thread);
+      },
       part_of_progress(0.0, near_share));
-  const double entry_norm =
-      matrix.norm() / std::sqrt(static_cast<double>(matrix.rows())) / static_cast<double>(matrix.cols());
+  const double entry_norm = std::hypot(matrix.norm(), options.norm_to_come) /
+                            std::sqrt(static_cast<double>(matrix.rows())) / static_cast<double>(matrix.cols());
+  const auto fill_far = [&](int number, int thread) {
+    const Block& block = matrix.tree().block(number);
+    const double entries =
+        static_cast<double>(matrix.tree().row_count(block)) * static_cast<double>(matrix.tree().column_count(block));
+    filling.low_rank(number, {options.tolerance, options.tolerance * entry_norm * std::sqrt(entries)}, thread);
+  };
   quadrature::parallel_for(
       far.size(), options.threads,
       [&](std::size_t task, int thread) {
-        const Block& block = matrix.tree().block(far[task]);
-        const double entries = static_cast<double>(matrix.tree().row_count(block)) *
-                               static_cast<double>(matrix.tree().column_count(block));
-        filling.low_rank(far[task], {options.tolerance, options.tolerance * entry_norm * std::sqrt(entries)}, thread);
+        for (const int number : far[task]) fill_far(number, thread);
       },
       part_of_progress(near_share, 1.0 - near_share));
   return matrix;

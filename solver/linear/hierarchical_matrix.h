@@ -16,7 +16,9 @@
 namespace isorim::solver {
 
 /// Makes the blocks of a hierarchical matrix. Called from several threads at once, each with its own `thread` in
-/// [0, quadrature::thread_count(threads)). R and C stand for the components of rows and columns.
+/// [0, quadrature::thread_count(threads)). Blocks of one kind with the same rows are asked for one after the other by
+/// one thread, in the order of the tree; all dense ones come before those of low rank. R and C stand for the components
+/// of rows and columns.
 class MatrixSource {
  public:
   virtual ~MatrixSource() = default;
@@ -104,6 +106,8 @@ struct AssemblyOptions {
   double tolerance = 1e-6;
   /// 0: all that OpenMP offers.
   int threads = 0;
+  /// Of what the caller will add to the dense part: counts as a part of the norm |D| below.
+  double norm_to_come = 0.0;
   /// Called with the finished fraction.
   std::function<void(double)> progress{};
 };

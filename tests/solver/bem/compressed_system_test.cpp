@@ -7,6 +7,10 @@
 
 #include "geometry/shapes/regions.h"
 #include "geometry/shapes/solids.h"
+#include "quadrature/target_rules.h"
+#include "solver/bem/assembly.h"
+#include "solver/bem/dense_system.h"
+#include "solver/bem/side_conditions.h"
 #include "solver/bem/solve.h"
 #include "tests/solver/bem/exact_problem.h"
 
@@ -83,6 +87,44 @@ TEST(CompressedSystem, GivesTheSolutionOfTheDenseOneInThePlane) {
   // A known constant at infinity.
   const ExactField<2> constant = test::linear_field<2>(Eigen::RowVector2d::Zero(), Eigen::VectorXd::Constant(1, 2.5));
   expect_same(test::problem_from<2>(constant, test::laplace_on(space), space, {robin}, true), space, 1e-8, "exterior");
+}
+
+/// All coefficients, right sides and side columns, within the tolerance of those of the dense system in the Frobenius
+/// norm.
+template <int Dim>
+void expect_same_equations(const Problem<Dim>& problem, const FieldSpace<Dim>& space, double tolerance,
+                           const std::string& what) {
+  const quadrature::TargetRules<Dim> rules(space.table, {tolerance, 3});
+  const double flux_scale = Assembler<Dim>(problem, space, rules, {}).flux_scale();
+  const SideConditions<Dim> sides = side_conditions(problem, space, rules, flux_scale, 0);
+  const Assembler<Dim> assembler(problem, space, rules, sides.flux_modes);
+  SolveOptions options;
+  options.tolerance = tolerance;
+  const DenseSystem dense = assemble_dense(assembler, sides, options);
+  const CompressedSystem compressed = assemble_compressed(assembler, sides, options);
+  EXPECT_TRUE(tolerance < 1e-4 || compressed.matrix->statistics().low_rank_blocks > 0) << what;
+  const auto exact = dense.matrix.topLeftCorner(assembler.size(), assembler.size());
+  EXPECT_LE((compressed.matrix->to_dense() - exact).norm(), tolerance * exact.norm()) << what;
+  EXPECT_LE((compressed.right - dense.right).norm(), tolerance * dense.right.norm()) << what;
+  const auto columns = dense.matrix.topRightCorner(assembler.size(), compressed.columns.cols());
+  EXPECT_LE((compressed.columns - columns).norm(), tolerance * columns.norm()) << what;
+}
+
+TEST(CompressedSystem, KeepsToTheToleranceInMatrixAndRightSides) {
+  const FieldSpace<3> cube = test::space_on(geometry::cube(1.0), 1, 3);
+  const FieldSpace<3> torus = test::space_on(geometry::torus(2.0, 0.5), 3, 2);
+  for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
+    for (const Kinds& kinds : {Kinds{value}, Kinds{flux}, Kinds{robin, flux, value}}) {
+      const std::string what = std::to_string(static_cast<int>(kinds[0])) + ", " + std::to_string(tolerance);
+      expect_same_equations(test::problem_from<3>(quadratic_potential<3>(), test::laplace_on(cube), cube, kinds), cube,
+                            tolerance, "cube " + what);
+      expect_same_equations(test::problem_from<3>(quadratic_potential<3>(), test::laplace_on(torus), torus, kinds),
+                            torus, tolerance, "torus " + what);
+    }
+  }
+  const FieldSpace<3> ball = test::space_on(geometry::sphere(1.0), 2, 3);
+  expect_same_equations(test::problem_from<3>(shear<3>(), test::elasticity_on(ball), ball, {value, flux}), ball, 1e-3,
+                        "elasticity");
 }
 
 TEST(CompressedSystem, AnyNumberOfThreadsGivesTheSameBits) {

@@ -121,6 +121,41 @@ TEST(CrossApproximation, MeetsTheAccuracyWithFewRowsAndColumns) {
   }
 }
 
+TEST(RowInterpolation, ServesSourcesBetweenThoseOfTheSample) {
+  // Charges and dipoles in one cube, targets in another; the weights come from one set of sources, and serve another.
+  Matrix3Xd points = random_points(720, 31);
+  points.rightCols(600).row(0).array() += 2.0;
+  Matrix3Xd normals = random_points(720, 32).array() - 0.5;
+  normals.colwise().normalize();
+  const auto rows = range(0, 120);
+  const auto columns = range(120, 420);
+  for (const KernelMatrix& matrix : {KernelMatrix(double_layer(points, normals)), KernelMatrix(kelvin(points), 3)}) {
+    const MatrixXd sample = dense(matrix, rows, columns);
+    const MatrixXd others = dense(matrix, rows, range(420, 720));
+    for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
+      KernelBlock block(matrix, rows, columns);
+      const RowInterpolation found = interpolate_rows(block, {tolerance, 0.0});
+      ASSERT_EQ(found.weights.cols(), std::ssize(found.rows));
+      const MatrixXd at_rows = found.weights(found.rows, Eigen::all);
+      // Rounding over the last pivots.
+      EXPECT_LT((at_rows - MatrixXd::Identity(at_rows.rows(), at_rows.cols())).cwiseAbs().maxCoeff(),
+                1e-15 / tolerance * 100.0);
+      EXPECT_LE(relative_error(found.weights * sample(found.rows, Eigen::all), sample), tolerance);
+      EXPECT_LE(relative_error(found.weights * others(found.rows, Eigen::all), others), tolerance);
+      EXPECT_TRUE(tolerance < 1e-4 || 2 * std::ssize(found.rows) < sample.rows()) << found.rows.size();
+    }
+  }
+}
+
+TEST(RowInterpolation, TakesAllRowsWhereTheRankIsFull) {
+  const KernelMatrix identity([](Index i, Index j, Eigen::Ref<MatrixXd> block) { block(0, 0) = i == j ? 1.0 : 0.0; });
+  const auto rows = range(0, 40);
+  KernelBlock block(identity, rows, rows);
+  const RowInterpolation found = interpolate_rows(block, {1e-10, 0.0});
+  EXPECT_EQ(std::ssize(found.rows), 40);
+  EXPECT_EQ(found.weights, MatrixXd::Identity(40, 40));
+}
+
 TEST(CrossApproximation, SeesPartsThatKnowNothingOfEachOther) {
   // Targets and nodes on two planes each; only what does not share a plane interacts, so [0 A; B 0]. The second part is
   // three of 103 targets: only the groups tell of it.
