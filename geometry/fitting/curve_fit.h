@@ -98,9 +98,9 @@ struct CurveFitOptions {
   std::optional<double> fairness;
   /// Method free: mu is such that the fairness term is this share of the mean squared distance. The root mean square
   /// distance then grows by no more than the factor sqrt(1 + share). 0 or more.
-  double fairness_share = 0.5;
+  double fairness_share = 0.3;
   /// 2 or 3.
-  int fairness_derivative = 2;
+  int fairness_derivative = 3;
 
   /// Points at which the polygon of the data turns by more than this angle, in degrees, become corners: knots of
   /// multiplicity p, at which the curve is only continuous, and which it meets. 0: none. Range 0 to 180.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "geometry/fitting/curve_fit.h"
 #include "geometry/fitting/foot_points.h"
@@ -11,6 +12,17 @@ namespace isorim::geometry {
 /// circle, whatever its radius.
 template <int Dim>
 double bending_energy(const SegmentedCurve<Dim>& curve);
+
+/// A part of a plane curve between two successive changes of the sign of its curvature.
+struct CurvatureLobe {
+  double first = 0.0;
+  /// May lie beyond the domain, by less than its length, on a closed curve.
+  double last = 0.0;
+  /// The largest distance of the lobe from its chord, to a few per cent.
+  double height = 0.0;
+};
+/// All lobes in the order of the curve; of an open curve not those that its ends cut off.
+std::vector<CurvatureLobe> curvature_lobes(const SegmentedCurve<2>& curve, bool closed);
 
 /// How often C' x C'' changes its sign; sign changes below 1e-12 of its natural size, and touching zeros, do not count.
 int curvature_sign_changes(const SegmentedCurve<2>& curve, bool closed);

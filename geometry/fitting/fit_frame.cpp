@@ -75,6 +75,12 @@ std::vector<double> FitFrame<Dim>::corner_parameters() const {
 }
 
 template <int Dim>
+bool FitFrame<Dim>::is_free_knot(double u) const {
+  const std::vector<double> corners = corner_parameters();
+  return std::find(corners.begin(), corners.end(), u) == corners.end();
+}
+
+template <int Dim>
 int FitFrame<Dim>::control_points(const std::vector<double>& breakpoints) const {
   const int spans = static_cast<int>(breakpoints.size()) - 1;
   if (is_periodic()) return spans;

@@ -46,6 +46,8 @@ class FitFrame {
   int control_points(const std::vector<double>& breakpoints) const;
   int free_knots(int control_points) const;
 
+  /// Whether a knot inside the domain may be moved: no corner.
+  bool is_free_knot(double u) const;
   /// Breakpoints by a rule and the parameters that go with them: those of the prepared points, moved by one constant
   /// if the rule puts the first breakpoint elsewhere.
   FitState<Dim> start(FitKnots rule, int control_points) const;

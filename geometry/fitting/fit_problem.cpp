@@ -184,10 +184,13 @@ template <int Dim>
 void add_fairness(const KnotVector& knots, int span, const Fairness& fairness, std::span<const GaussPoint> rule,
                   ConstrainedRows<Dim>& rows) {
   const double length = knots[span + 1] - knots[span];
+  const double mu =
+      fairness.mu *
+      (fairness.factors.empty() ? 1.0 : fairness.factors[static_cast<std::size_t>(span - knots.degree())]);
   LocalBasisTable<3> table(knots.degree() + 1, 4);
   for (const GaussPoint& gauss : rule) {
     fill_basis_table(knots, span, knots[span] + gauss.node * length, table);
-    LocalBasisTable<0> row = table.col(fairness.derivative) * std::sqrt(fairness.mu * gauss.weight * length);
+    LocalBasisTable<0> row = table.col(fairness.derivative) * std::sqrt(mu * gauss.weight * length);
     Point<Dim> rhs = Point<Dim>::Zero();
     rows.add(span - knots.degree(), row.data(), rhs.data());
   }

@@ -21,6 +21,8 @@ struct FitData {
 struct Fairness {
   double mu = 0.0;
   int derivative = 2;
+  /// Factors on mu, one for each interval between successive breakpoints; empty: all 1.
+  std::vector<double> factors{};
 };
 
 /// Conditions that a fit meets exactly.

@@ -90,15 +90,48 @@ BernsteinCoefficients curvature_numerator(const Points<2>& points) {
          multiply(first.row(1).transpose(), turned.row(1).transpose());
 }
 
-/// The signs along the segment, in order.
-void append_signs(const BernsteinCoefficients& numerator, double noise, std::vector<int>& signs) {
-  if (numerator.size() == 0) return;
-  if (numerator.minCoeff() > noise || numerator.maxCoeff() < -noise) {
-    signs.push_back(numerator[0] > 0.0 ? 1 : -1);
-    return;
+/// Where the curvature changes its sign inside the domain.
+std::vector<double> find_sign_changes(const SegmentedCurve<2>& curve) {
+  constexpr double rounding = 1e-12;
+  std::vector<double> changes;
+  int last = 0;
+  const auto append = [&](double u, int sign) {
+    if (sign == 0) return;
+    if (last == -sign) changes.push_back(u);
+    last = sign;
+  };
+  for (int i = 0; i < curve.segment_count(); ++i) {
+    const Points<2> points = curve.segment_points(i);
+    const Interval domain = curve.segment_domain(i);
+    const Eigen::Index p = points.cols() - 1;
+    const double size = (points.rightCols(p) - points.leftCols(p)).cwiseAbs().maxCoeff();
+    const double noise = rounding * size * size;
+    const BernsteinCoefficients numerator = curvature_numerator(points);
+    if (numerator.size() == 0) continue;
+    if (numerator.minCoeff() > noise || numerator.maxCoeff() < -noise) {
+      append(domain.first, numerator[0] > 0.0 ? 1 : -1);
+      continue;
+    }
+    const SignChart chart = sign_chart(numerator, noise);
+    append(domain.first, chart.signs.front());
+    for (std::size_t k = 0; k < chart.roots.size(); ++k)
+      append(domain.first + chart.roots[k] * domain.length(), chart.signs[k + 1]);
   }
-  const SignChart chart = sign_chart(numerator, noise);
-  signs.insert(signs.end(), chart.signs.begin(), chart.signs.end());
+  return changes;
+}
+
+/// The largest distance of the part [first, last] from its chord.
+double lobe_height(const SegmentedCurve<2>& curve, double first, double last) {
+  constexpr int samples = 16;
+  const double period = curve.domain().length();
+  const auto point = [&](double u) { return curve.jet(u < curve.domain().last ? u : u - period).point; };
+  const Point2 start = point(first);
+  const Vector2 chord = point(last) - start;
+  const Vector2 normal = Vector2(-chord[1], chord[0]).normalized();
+  double height = 0.0;
+  for (int i = 1; i < samples; ++i)
+    height = std::max(height, std::abs(normal.dot(point(first + (last - first) * i / samples) - start)));
+  return height;
 }
 
 }  // namespace
@@ -116,19 +149,18 @@ double bending_energy(const SegmentedCurve<Dim>& curve) {
 }
 
 int curvature_sign_changes(const SegmentedCurve<2>& curve, bool closed) {
-  constexpr double rounding = 1e-12;
-  std::vector<int> signs;
-  for (int i = 0; i < curve.segment_count(); ++i) {
-    const Points<2> points = curve.segment_points(i);
-    const double size =
-        (points.rightCols(points.cols() - 1) - points.leftCols(points.cols() - 1)).cwiseAbs().maxCoeff();
-    append_signs(curvature_numerator(points), rounding * size * size, signs);
-  }
-  std::erase(signs, 0);
-  int changes = 0;
-  for (std::size_t i = 1; i < signs.size(); ++i) changes += signs[i] != signs[i - 1] ? 1 : 0;
-  if (closed && !signs.empty() && signs.front() != signs.back()) ++changes;
-  return changes;
+  const int changes = static_cast<int>(find_sign_changes(curve).size());
+  return closed ? changes + changes % 2 : changes;
+}
+
+std::vector<CurvatureLobe> curvature_lobes(const SegmentedCurve<2>& curve, bool closed) {
+  std::vector<double> places = find_sign_changes(curve);
+  if (closed && places.size() % 2 == 1) places.insert(places.begin(), curve.domain().first);
+  if (closed && !places.empty()) places.push_back(places.front() + curve.domain().length());
+  std::vector<CurvatureLobe> lobes;
+  for (std::size_t i = 1; i < places.size(); ++i)
+    lobes.push_back({places[i - 1], places[i], lobe_height(curve, places[i - 1], places[i])});
+  return lobes;
 }
 
 template <int Dim>

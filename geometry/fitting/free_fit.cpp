@@ -1,12 +1,15 @@
 #include "geometry/fitting/free_fit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "geometry/fitting/curve_shape.h"
+#include "geometry/fitting/knot_steps.h"
 
 namespace isorim::geometry {
 
@@ -73,48 +76,123 @@ template <int Dim>
       fmt::format("curve fit: the points do not determine all {} control points; give fewer", control_points));
 }
 
+/// Knots where the errors are: starting from uniform ones, as many as half the control points.
 template <int Dim>
-double curve_roughness(const FitFrame<Dim>& frame, const FitState<Dim>& state) {
-  const SegmentedCurve<Dim> curve = frame.curve(state);
-  double sum = 0.0;
-  for (int s = 0; s < curve.segment_count(); ++s) {
-    const Interval part = curve.segment_domain(s);
-    for (const double x : {0.2113248654051871, 0.7886751345948129})
-      sum += 0.5 * part.length() * curve.jet(part.first + x * part.length()).duu.squaredNorm();
+FitState<Dim> grow_knots(const FitFrame<Dim>& frame, int control_points) {
+  constexpr int corrections = 2;
+  const int first = std::max(frame.fewest_control_points(), control_points / 2);
+  FitState<Dim> state = frame.start(FitKnots::uniform, first);
+  if (!frame.solve(state, {})) {
+    state = frame.start(FitKnots::piegl_tiller, first);
+    if (!frame.solve(state, {})) refuse<Dim>(control_points);
   }
-  return sum;
+  while (true) {
+    for (int i = 0; i < corrections; ++i) {
+      frame.correct_parameters(state, 1);
+      if (!frame.solve(state, {})) refuse<Dim>(control_points);
+    }
+    const int have = frame.control_points(state.breakpoints);
+    if (have == control_points) return state;
+    if (!add_knots(frame, std::min(control_points - have, std::max(1, have / 4)), state)) refuse<Dim>(control_points);
+    if (!frame.solve(state, {})) refuse<Dim>(control_points);
+  }
+}
+
+/// The fairness term that the options ask for at the present distances.
+template <int Dim>
+Fairness choose_fairness(const FitFrame<Dim>& frame, const FitState<Dim>& state) {
+  const CurveFitOptions<Dim>& options = frame.options();
+  Fairness fairness{0.0, options.fairness_derivative, {}};
+  if (options.fairness) {
+    fairness.mu = *options.fairness;
+  } else {
+    const double rough = roughness(frame, fairness, state);
+    if (rough > 0.0) fairness.mu = options.fairness_share * state.mean_squared / rough;
+  }
+  return fairness;
+}
+
+template <int Dim>
+double largest_distance(const FitFrame<Dim>& frame, const FitState<Dim>& state) {
+  const SegmentedCurve<Dim> curve = frame.curve(state);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < state.parameters.size(); ++i)
+    largest = std::max(
+        largest,
+        (curve.jet(state.parameters[i]).point - frame.prepared().data.points.col(static_cast<Eigen::Index>(i))).norm());
+  return largest;
+}
+
+/// Lobes of curvature that are lower than the distances of the data are no shape but noise: the fairness term is made
+/// stronger around them, the lowest first, until they are gone; what costs too much distance is undone.
+void smooth_low_lobes(const FitFrame<2>& frame, Fairness fairness, FitState<2>& state) {
+  constexpr double stronger = 8.0;
+  constexpr double strongest = 1e6;
+  constexpr double rms_growth = 1.3;
+  constexpr double max_growth = 1.2;
+  if (!(fairness.mu > 0.0) || fairness.derivative > frame.degree()) return;
+  const double level = std::sqrt(state.mean_squared);
+  const double most = max_growth * largest_distance(frame, state);
+  const std::size_t spans = state.breakpoints.size() - 1;
+  fairness.factors.assign(spans, 1.0);
+  const auto span_of = [&](double u) {
+    if (u >= 1.0) u -= 1.0;
+    const auto next = std::upper_bound(state.breakpoints.begin() + 1, state.breakpoints.end() - 1, u);
+    return static_cast<std::size_t>(next - state.breakpoints.begin()) - 1;
+  };
+  std::vector<char> is_kept(spans, 0);
+  for (std::size_t round = 0; round < 2 * spans; ++round) {
+    const CurvatureLobe* lowest = nullptr;
+    const std::vector<CurvatureLobe> lobes = curvature_lobes(frame.curve(state), frame.options().closed);
+    for (const CurvatureLobe& lobe : lobes)
+      if (lobe.height < level && (lowest == nullptr || lobe.height < lowest->height) &&
+          is_kept[span_of(0.5 * (lobe.first + lobe.last))] == 0)
+        lowest = &lobe;
+    if (lowest == nullptr) return;
+    const std::size_t first = span_of(lowest->first);
+    const std::size_t count = (span_of(lowest->last) + spans - first) % spans + 3;
+    FitState<2> next = state;
+    Fairness next_fairness = fairness;
+    for (std::size_t i = 0; i < std::min(count, spans); ++i) {
+      double& factor = next_fairness.factors[(first + spans - 1 + i) % spans];
+      factor = std::min(strongest, stronger * factor);
+    }
+    bool is_good = frame.solve(next, next_fairness);
+    if (is_good) frame.correct_parameters(next, 1);
+    is_good = is_good && std::sqrt(next.mean_squared) <= rms_growth * level && largest_distance(frame, next) <= most;
+    if (is_good) {
+      state = std::move(next);
+      fairness = std::move(next_fairness);
+    } else {
+      state.iterations = next.iterations;
+      is_kept[span_of(0.5 * (lowest->first + lowest->last))] = 1;
+    }
+  }
 }
 
 }  // namespace
 
 template <int Dim>
 FitState<Dim> free_fit(const FitFrame<Dim>& frame, int control_points) {
-  constexpr int corrections_per_stage = 2;
-  constexpr int last_corrections = 12;
-  const int fewest = frame.fewest_control_points();
-  FitState<Dim> state = frame.start(FitKnots::uniform, std::max(fewest, control_points / 2));
-  if (!frame.solve(state, {})) {
-    state = frame.start(FitKnots::piegl_tiller, std::max(fewest, control_points / 2));
-    if (!frame.solve(state, {})) refuse<Dim>(control_points);
-  }
-  while (true) {
-    for (int i = 0; i < corrections_per_stage; ++i) {
-      frame.correct_parameters(state, 1);
-      if (!frame.solve(state, {})) refuse<Dim>(control_points);
-    }
-    const int missing = control_points - frame.control_points(state.breakpoints);
-    if (missing == 0) break;
-    if (!add_knots(frame, std::min(missing, std::max(1, frame.control_points(state.breakpoints) / 4)), state))
-      refuse<Dim>(control_points);
-    if (!frame.solve(state, {})) refuse<Dim>(control_points);
-  }
-  for (int i = 0; i < last_corrections; ++i) {
+  constexpr int corrections = 4;
+  constexpr int steps = 5;
+  FitState<Dim> state = grow_knots(frame, control_points);
+  for (int i = 0; i < corrections; ++i) {
     frame.correct_parameters(state, 1);
-    const double roughness = curve_roughness(frame, state);
-    const double mu = frame.options().fairness.value_or(
-        roughness > 0.0 ? frame.options().fairness_share * state.mean_squared / roughness : 0.0);
-    if (!frame.solve(state, {mu, 2})) refuse<Dim>(control_points);
+    if (!frame.solve(state, choose_fairness(frame, state))) refuse<Dim>(control_points);
   }
+  double damping = 1e-3;
+  for (int i = 0; i < steps; ++i) {
+    frame.correct_parameters(state, 2);
+    const Fairness fairness = choose_fairness(frame, state);
+    if (!frame.solve(state, fairness)) refuse<Dim>(control_points);
+    if (!move_knots(frame, fairness, state, damping)) break;
+  }
+  frame.correct_parameters(state, 2);
+  const Fairness fairness = choose_fairness(frame, state);
+  if (!frame.solve(state, fairness)) refuse<Dim>(control_points);
+  frame.correct_parameters(state, 1);
+  if constexpr (Dim == 2) smooth_low_lobes(frame, fairness, state);
   return state;
 }
 

@@ -1,0 +1,182 @@
+#include "geometry/fitting/free_fit.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "geometry/fitting/curve_shape.h"
+#include "geometry/fitting/knot_steps.h"
+#include "tests/geometry/fitting/measured_sections.h"
+#include "tests/geometry/random_splines.h"
+
+namespace isorim::geometry {
+namespace {
+
+using std::numbers::pi;
+using testing::measured_sections;
+using testing::MeasuredSection;
+using testing::Random;
+
+/// FITPACK's best curve with this number of control points (SciPy 1.10, splprep with per = 1, knots chosen by it, its
+/// smoothing tuned until the number is met).
+struct Fitpack {
+  double max_distance;
+  double rms_distance;
+  double bending_energy;
+  int sign_changes;
+};
+constexpr std::array<Fitpack, 4> fitpack{{{0.0322129, 0.0151126, 117.842, 14},
+                                          {0.0311529, 0.0132059, 84.9274, 10},
+                                          {0.0291266, 0.0119669, 87.7882, 28},
+                                          {0.146287, 0.0385455, 486.951, 14}}};
+
+/// Nearer to the data, in the largest and the mean distance, without being rougher in both measures.
+TEST(FreeFit, IsNearerThanFitpackAndNoRougher) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    const MeasuredSection& section = measured_sections()[k];
+    CurveFitOptions<2> options;
+    options.control_points = section.control_points;
+    const CurveFit<2> fit = fit_points(section.points, options);
+    EXPECT_EQ(fit.control_points, section.control_points);
+    EXPECT_LT(fit.quality.max_distance, fitpack[k].max_distance) << k;
+    EXPECT_LT(fit.quality.rms_distance, fitpack[k].rms_distance) << k;
+    EXPECT_TRUE(fit.quality.bending_energy <= fitpack[k].bending_energy ||
+                fit.quality.curvature_sign_changes <= fitpack[k].sign_changes)
+        << k;
+  }
+}
+
+/// The share bounds what fairness costs: the same knots without it are nearer by less than sqrt(1 + share).
+TEST(FreeFit, FairnessCostsNoMoreThanItsShare) {
+  const MeasuredSection& section = measured_sections()[2];
+  CurveFitOptions<2> options;
+  options.method = FitMethod::fixed_knots;
+  options.control_points = section.control_points;
+  const FitFrame<2> frame(section.points, options);
+  FitState<2> plain = frame.start(FitKnots::uniform, section.control_points);
+  ASSERT_TRUE(frame.solve(plain, {}));
+  const double least = fit_objective(frame, {}, plain);
+  for (const double share : {0.1, 0.3, 1.0, 3.0}) {
+    Fairness fairness{0.0, 3, {}};
+    fairness.mu = share * least / roughness(frame, fairness, plain);
+    FitState<2> fair = plain;
+    ASSERT_TRUE(frame.solve(fair, fairness));
+    EXPECT_GT(fit_objective(frame, {}, fair), least);
+    EXPECT_LT(fit_objective(frame, {}, fair), (1.0 + share) * least);
+  }
+}
+
+/// Control points are optimal, so to first order only the knots count: the step must go downhill, and far.
+TEST(KnotSteps, LowerTheObjective) {
+  for (const bool closed : {true, false})
+    for (int degree = 2; degree <= 5; ++degree)
+      for (const int derivative : {2, 3}) {
+        CurveFitOptions<2> options;
+        options.closed = closed;
+        options.degree = degree;
+        const FitFrame<2> frame(measured_sections()[0].points, options);
+        FitState<2> state = frame.start(FitKnots::uniform, 24);
+        ASSERT_TRUE(frame.solve(state, {}));
+        Fairness fairness{0.0, derivative, {}};
+        if (derivative <= degree)
+          fairness.mu = 0.1 * fit_objective(frame, {}, state) / roughness(frame, fairness, state);
+        ASSERT_TRUE(frame.solve(state, fairness));
+        const double before = fit_objective(frame, fairness, state);
+        double damping = 1e-3;
+        for (int i = 0; i < 6; ++i) move_knots(frame, fairness, state, damping);
+        EXPECT_LT(fit_objective(frame, fairness, state), 0.75 * before) << degree << derivative << closed;
+        for (std::size_t j = 1; j < state.breakpoints.size(); ++j)
+          EXPECT_LT(state.breakpoints[j - 1], state.breakpoints[j]);
+      }
+}
+
+/// A spline sampled at its own parameters, knots a little off: the knots return, quadratically.
+TEST(KnotSteps, FindTheKnotsOfASpline) {
+  Random random(21);
+  for (const bool closed : {true, false}) {
+    const int spans = 9;
+    std::vector<double> knots{0.0};
+    for (int i = 0; i < spans; ++i) knots.push_back(knots.back() + random.real(0.7, 1.0));
+    for (double& u : knots) u /= knots.back();
+    knots.back() = 1.0;
+    const KnotVector vector = closed ? KnotVector::periodic(3, knots) : KnotVector::clamped(3, knots);
+    Points<3> control(3, vector.basis_count());
+    for (double& x : control.reshaped()) x = random.real(-1, 1);
+    if (closed) control.rightCols(3) = control.leftCols(3);
+    const NurbsCurve<3> curve = NurbsCurve<3>::from_points(vector, control);
+    const int count = 120;
+    Points<3> points(3, count);
+    for (int i = 0; i < count; ++i)
+      points.col(i) = evaluate(curve, static_cast<double>(i) / (closed ? count : count - 1));
+    CurveFitOptions<3> options;
+    options.closed = closed;
+    options.parameters = FitParameters::uniform;
+    const FitFrame<3> frame(points, options);
+    FitState<3> state = frame.start(FitKnots::uniform, frame.control_points(knots));
+    for (std::size_t j = 1; j + 1 < knots.size(); ++j)
+      state.breakpoints[j] = knots[j] + 0.1 / spans * random.real(-1, 1);
+    ASSERT_TRUE(frame.solve(state, {}));
+    double damping = 1e-6;
+    for (int i = 0; i < 12; ++i) move_knots(frame, {}, state, damping);
+    for (std::size_t j = 0; j < knots.size(); ++j) EXPECT_NEAR(state.breakpoints[j], knots[j], 1e-9) << closed << j;
+    EXPECT_LT(fit_objective(frame, {}, state), 1e-20);
+  }
+}
+
+/// y = x^2 + 0.1 sin(5 x): lobes between the zeros of 2 - 2.5 sin(5 x), as a polynomial fit to rounding.
+TEST(CurvatureLobes, LieBetweenTheInflections) {
+  const int count = 400;
+  Points<2> points(2, count);
+  for (int i = 0; i < count; ++i) {
+    const double x = -1.0 + 2.0 * i / (count - 1);
+    points.col(i) << x, x * x + 0.1 * std::sin(5 * x);
+  }
+  CurveFitOptions<2> options;
+  options.method = FitMethod::fixed_knots;
+  options.closed = false;
+  options.degree = 5;
+  options.control_points = 60;
+  options.parameter_corrections = 3;
+  const CurveFit<2> fit = fit_points(points, options);
+  const SegmentedCurve<2> curve(fit.curve.knots(), fit.curve.control_points(), false);
+  const double first = std::asin(0.8) / 5;
+  const std::array<double, 3> zeros{(pi - std::asin(0.8)) / 5 - 2 * pi / 5, first, (pi - std::asin(0.8)) / 5};
+  EXPECT_EQ(fit.quality.curvature_sign_changes, 3);
+  const std::vector<CurvatureLobe> lobes = curvature_lobes(curve, false);
+  ASSERT_EQ(lobes.size(), 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(curve.jet(lobes[i].first).point[0], zeros[i], 1e-4);
+    EXPECT_NEAR(curve.jet(lobes[i].last).point[0], zeros[i + 1], 1e-4);
+  }
+  // The height of the first one, by sampling.
+  double height = 0.0;
+  const Point2 a = curve.jet(lobes[0].first).point;
+  const Vector2 chord = (curve.jet(lobes[0].last).point - a).normalized();
+  for (double x = zeros[0]; x < zeros[1]; x += 1e-4) {
+    const Vector2 d = Point2(x, x * x + 0.1 * std::sin(5 * x)) - a;
+    height = std::max(height, std::abs(chord[0] * d[1] - chord[1] * d[0]));
+  }
+  EXPECT_NEAR(lobes[0].height, height, 0.03 * height);
+}
+
+/// A circle with noise: the lobes that the noise makes are smoothed away.
+TEST(FreeFit, NoiseMakesNoInflections) {
+  Random random(8);
+  const int count = 240;
+  Points<2> points(2, count);
+  for (int i = 0; i < count; ++i) {
+    const double t = 2 * pi * i / count;
+    points.col(i) = (1.0 + 2e-4 * random.real(-1, 1)) * Point2(std::cos(t), std::sin(t));
+  }
+  CurveFitOptions<2> options;
+  options.control_points = 40;
+  const CurveFit<2> fit = fit_points(points, options);
+  EXPECT_EQ(fit.quality.curvature_sign_changes, 0);
+  EXPECT_LT(fit.quality.rms_distance, 2e-4);
+  EXPECT_NEAR(fit.quality.bending_energy, 4 * pi * pi, 0.5);
+}
+
+}  // namespace
+}  // namespace isorim::geometry
