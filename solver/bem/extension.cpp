@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <Eigen/QR>
 
@@ -104,7 +105,120 @@ Eigen::MatrixXd least_shares(const Eigen::MatrixXd& tests, const Eigen::MatrixXd
   return shares + linear.solve(wanted.topRows(linear_count) - tests.topRows(linear_count) * shares);
 }
 
+/// The Bernstein polynomials of the field's degree over a part of a cell, divided by the cell's weight function.
+class PartBasis {
+ public:
+  PartBasis(const PatchSpace<3>& cells, const ElementTable<3>& table, const CellPart& part)
+      : cells_(cells), table_(table), part_(part), field_(cells.elements[static_cast<std::size_t>(part.cell)]) {}
+
+  int degree(std::size_t d) const { return field_.degree[d]; }
+  Point3 position(const Point2& place) const {
+    return evaluate_jet<3>(table_, table_.elements[static_cast<std::size_t>(part_.cell)], in_cell(place)).position;
+  }
+  Eigen::RowVectorXd values(const Point2& place) const;
+  /// Coefficients of functions of the position that are given at points: one column a function.
+  template <class Functions>
+  Eigen::MatrixXd interpolate(const Functions& functions) const;
+
+ private:
+  Point2 in_cell(const Point2& place) const {
+    return {part_.within[0].first + place.x() * part_.within[0].length(),
+            part_.within[1].first + place.y() * part_.within[1].length()};
+  }
+
+  const PatchSpace<3>& cells_;
+  const ElementTable<3>& table_;
+  const CellPart& part_;
+  const FieldElement<3>& field_;
+};
+
+Eigen::RowVectorXd PartBasis::values(const Point2& place) const {
+  const geometry::BernsteinJet u = geometry::bernstein_jet(degree(0), place.x());
+  const geometry::BernsteinJet v = geometry::bernstein_jet(degree(1), place.y());
+  std::vector<double> products(static_cast<std::size_t>(field_.count));
+  numerators<3>(cells_, part_.cell, in_cell(place), products);
+  const double weight = std::accumulate(products.begin(), products.end(), 0.0);
+  Eigen::RowVectorXd result(field_.bernstein_count());
+  Eigen::Index k = 0;
+  for (std::size_t j = 0; j <= static_cast<std::size_t>(degree(1)); ++j)
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(degree(0)); ++i)
+      result(k++) = u.values[i] * v.values[j] / weight;
+  return result;
+}
+
+template <class Functions>
+Eigen::MatrixXd PartBasis::interpolate(const Functions& functions) const {
+  std::vector<Point2> places;
+  for (const double t : quadrature::gauss_legendre(degree(1) + 1).nodes)
+    for (const double s : quadrature::gauss_legendre(degree(0) + 1).nodes) places.emplace_back(s, t);
+  const auto count = static_cast<Eigen::Index>(places.size());
+  Eigen::MatrixXd basis(count, count);
+  Eigen::MatrixXd wanted(count, functions(position(places[0])).size());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    basis.row(k) = values(places[static_cast<std::size_t>(k)]);
+    wanted.row(k) = functions(position(places[static_cast<std::size_t>(k)]));
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(basis);
+  Eigen::MatrixXd result = factors.solve(wanted);
+  result += factors.solve(wanted - basis * result);
+  return result;
+}
+
+/// Coordinates about the middle of a part, in units of its size.
+Frame frame_of_part(const PartBasis& basis) {
+  const Point3 middle = basis.position({0.5, 0.5});
+  double size = 0.0;
+  for (const double s : {0.0, 1.0})
+    for (const double t : {0.0, 1.0}) size = std::max(size, (basis.position({s, t}) - middle).norm());
+  return {middle, Eigen::Matrix3d::Identity() / size};
+}
+
 }  // namespace
+
+PartFunctions fitted_functions(const PatchSpace<3>& cells, const ElementTable<3>& table, const CellPart& part,
+                               std::span<const Point2> candidates) {
+  constexpr double indistinct = 1e-5;
+  const PartBasis basis(cells, table, part);
+  Eigen::MatrixXd values(static_cast<Eigen::Index>(candidates.size()), (basis.degree(0) + 1) * (basis.degree(1) + 1));
+  for (Eigen::Index i = 0; i < values.rows(); ++i)
+    values.row(i) = basis.values(candidates[static_cast<std::size_t>(i)]);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(values.transpose());
+  const Eigen::VectorXd pivots = factors.matrixQR().diagonal().cwiseAbs();
+  const Eigen::Index count = (pivots.array() > indistinct * pivots(0)).count();
+  PartFunctions result;
+  Eigen::MatrixXd at_points(count, values.cols());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Index chosen = factors.colsPermutation().indices()(k);
+    result.points.push_back(candidates[static_cast<std::size_t>(chosen)]);
+    at_points.row(k) = values.row(chosen);
+  }
+  // The smallest coefficients that interpolate, then corrected to hold linear functions of the position.
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> inverse(at_points);
+  Eigen::MatrixXd rows = inverse.solve(Eigen::MatrixXd::Identity(count, count));
+  rows += inverse.solve(Eigen::MatrixXd::Identity(count, count) - at_points * rows);
+  const Frame frame = frame_of_part(basis);
+  const Eigen::MatrixXd linear = basis.interpolate([&](const Point3& x) { return test_functions(frame.local(x), 1); });
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> known;
+  known.setThreshold(indistinct);
+  known.compute(at_points * linear);
+  rows += (linear - rows * (at_points * linear)) * known.pseudoInverse();
+  result.rows = rows.transpose();
+  return result;
+}
+
+Eigen::MatrixXd continued_rows(const PatchSpace<3>& cells, const ElementTable<3>& table, const CellPart& donor,
+                               const PartFunctions& functions, const CellPart& target) {
+  const PartBasis from(cells, table, donor);
+  const PartBasis to(cells, table, target);
+  const Frame frame = frame_of(table, donor.cell);
+  const int degree = std::min(from.degree(0), from.degree(1));
+  const auto tests = [&](const Point3& x) { return test_functions(frame.local(x), degree); };
+  const Eigen::MatrixXd wanted = to.interpolate(tests);
+  Eigen::MatrixXd have(static_cast<Eigen::Index>(functions.points.size()), wanted.cols());
+  for (Eigen::Index k = 0; k < have.rows(); ++k)
+    have.row(k) = tests(from.position(functions.points[static_cast<std::size_t>(k)]));
+  return least_shares(have.transpose(), wanted.transpose());
+}
 
 Eigen::MatrixXd extension(const PatchSpace<3>& cells, const ElementTable<3>& table, int donor, int target) {
   const Frame frame = frame_of(table, donor);

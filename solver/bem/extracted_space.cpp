@@ -143,7 +143,7 @@ PatchSpace<3> extracted_space(const ExtractedSurface& surface, std::span<const i
       for (Eigen::Index j = 0; j < rows.cols(); ++j) space.rows.push_back(rows(k, j));
   }
   space.points.resize(numbers.size());
-  choose_points<3>(space, std::vector<char>(numbers.size(), 0), [&](int e) {
+  require_points<3>(space, std::vector<char>(numbers.size(), 0), [&](int e) {
     const auto& degree = space.elements[static_cast<std::size_t>(e)].degree;
     std::vector<Point2> places;
     for (const double t : quadrature::gauss_legendre(degree[1] + 2).nodes)

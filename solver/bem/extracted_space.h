@@ -23,7 +23,7 @@ std::vector<int> smooth_regions(const geometry::ExtractedSurface& surface, int p
                                 std::size_t first_element, std::span<const int> groups);
 
 /// The surface's own functions w_a N_a / W, each as many times as there are regions that it lives on. Points by
-/// choose_points() throughout. elements: those of the table.
+/// require_points() throughout. elements: those of the table.
 PatchSpace<3> extracted_space(const geometry::ExtractedSurface& surface, std::span<const int> regions,
                               std::span<const geometry::BezierElement<3>> elements);
 

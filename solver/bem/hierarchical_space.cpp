@@ -289,7 +289,7 @@ void HierarchyBuilder<Dim>::place_points() {
     result_.points[static_cast<std::size_t>(number)] = {leaf->second, place.place};
     has_point[static_cast<std::size_t>(number)] = 1;
   }
-  choose_points<Dim>(result_, std::move(has_point), [this](int e) {
+  require_points<Dim>(result_, std::move(has_point), [this](int e) {
     const auto& degree = result_.elements[static_cast<std::size_t>(e)].degree;
     std::vector<Point<Dim - 1>> places;
     const std::vector<double>& s = quadrature::gauss_legendre(degree[0] + 2).nodes;

@@ -48,7 +48,7 @@ std::vector<GridCell<Dim>> graded(const CellTree<Dim>& tree, std::span<const Gri
 /// Functions of a level that live on cells of this level alone, if not of the next alone; truncated where functions of
 /// finer levels take over, so that all sum up to one, and functions of level 0 keep their coefficients: the space holds
 /// whatever that of level 0 holds. Points of functions that finer levels leave alone are those of the tensor-product
-/// spaces, the others are chosen by choose_points().
+/// spaces, the others are chosen by require_points().
 template <int Dim>
 PatchSpace<Dim> hierarchical_space(const CellTree<Dim>& tree, std::span<const TensorSpace<Dim>> levels,
                                    std::span<const geometry::BezierElement<Dim>> elements);

@@ -110,26 +110,39 @@ class Selection {
         }
   }
 
-  void choose(const std::function<std::vector<Point<Dim - 1>>(int)>& candidates) {
+  /// Returns functions that depend on the others.
+  std::vector<int> choose(const std::function<std::vector<Point<Dim - 1>>(int)>& candidates, double indistinct) {
     std::vector<Place> places;
     for (const std::int32_t e : elements_)
       for (const Point<Dim - 1>& place : candidates(e)) places.push_back({e, place});
+    if (places.empty()) return cluster_;
     const Eigen::Index wanted = static_cast<Eigen::Index>(cluster_.size());
     const Eigen::MatrixXd values = free_part(values_at(places));
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(values.transpose());
-    const Eigen::Index rank = std::min(values.rows(), values.cols());
-    if (rank < wanted ||
-        !(std::abs(factors.matrixQR()(wanted - 1, wanted - 1)) > 1e-10 * std::abs(factors.matrixQR()(0, 0))))
-      throw NumericalError(
-          fmt::format("field space: no independent collocation points found for {} functions among {} candidates",
-                      wanted, places.size()));
+    const Eigen::Index rank = rank_of(factors, indistinct);
+    if (rank < wanted) return dependent_functions(values, rank);
     std::vector<Place> chosen;
     for (Eigen::Index k = 0; k < wanted; ++k)
       chosen.push_back(places[static_cast<std::size_t>(factors.colsPermutation().indices()(k))]);
     assign(chosen);
+    return {};
   }
 
  private:
+  static Eigen::Index rank_of(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& factors, double indistinct) {
+    const auto pivots = factors.matrixQR().diagonal().cwiseAbs();
+    return (pivots.array() > indistinct * pivots(0)).count();
+  }
+
+  /// Those of the cluster that the others leave least of.
+  std::vector<int> dependent_functions(const Eigen::MatrixXd& values, Eigen::Index rank) const {
+    std::vector<int> found;
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(values);
+    for (Eigen::Index k = rank; k < values.cols(); ++k)
+      found.push_back(cluster_[static_cast<std::size_t>(factors.colsPermutation().indices()(k))]);
+    return found;
+  }
+
   void add_column(int function) { column_[static_cast<std::size_t>(function)] = columns_++; }
 
   /// Scaled to the sum one, as the functions are; columns of functions that have no point yet and are not of the
@@ -186,17 +199,38 @@ class Selection {
 }  // namespace
 
 template <int Dim>
-void choose_points(PatchSpace<Dim>& patch, std::vector<char> has_point,
-                   const std::function<std::vector<Point<Dim - 1>>(int element)>& candidates) {
-  if (std::ranges::find(has_point, 0) == has_point.end()) return;
+std::vector<int> choose_points(PatchSpace<Dim>& patch, std::vector<char> has_point,
+                               const std::function<std::vector<Point<Dim - 1>>(int element)>& candidates,
+                               double indistinct) {
+  if (std::ranges::find(has_point, 0) == has_point.end()) return {};
   const Supports support = supports(patch);
-  for (int f = 0; f < static_cast<int>(has_point.size()); ++f)
-    if (!has_point[static_cast<std::size_t>(f)])
-      Selection<Dim>(patch, support, next_cluster(patch, support, f, has_point), has_point).choose(candidates);
+  for (int f = 0; f < static_cast<int>(has_point.size()); ++f) {
+    if (has_point[static_cast<std::size_t>(f)]) continue;
+    const std::vector<int> dependent =
+        Selection<Dim>(patch, support, next_cluster(patch, support, f, has_point), has_point)
+            .choose(candidates, indistinct);
+    if (!dependent.empty()) return dependent;
+  }
+  return {};
 }
 
-template void choose_points(PatchSpace<2>&, std::vector<char>, const std::function<std::vector<Point<1>>(int)>&);
-template void choose_points(PatchSpace<3>&, std::vector<char>, const std::function<std::vector<Point<2>>(int)>&);
+template <int Dim>
+void require_points(PatchSpace<Dim>& patch, std::vector<char> has_point,
+                    const std::function<std::vector<Point<Dim - 1>>(int element)>& candidates) {
+  const std::vector<int> dependent = choose_points(patch, std::move(has_point), candidates, 1e-10);
+  if (!dependent.empty())
+    throw NumericalError(
+        fmt::format("field space: {} functions depend on the others at all candidates for their "
+                    "collocation points",
+                    dependent.size()));
+}
+
+template std::vector<int> choose_points(PatchSpace<2>&, std::vector<char>,
+                                        const std::function<std::vector<Point<1>>(int)>&, double);
+template std::vector<int> choose_points(PatchSpace<3>&, std::vector<char>,
+                                        const std::function<std::vector<Point<2>>(int)>&, double);
+template void require_points(PatchSpace<2>&, std::vector<char>, const std::function<std::vector<Point<1>>(int)>&);
+template void require_points(PatchSpace<3>&, std::vector<char>, const std::function<std::vector<Point<2>>(int)>&);
 template void numerators(const PatchSpace<2>&, int, const Point<1>&, std::span<double>);
 template void numerators(const PatchSpace<3>&, int, const Point<2>&, std::span<double>);
 

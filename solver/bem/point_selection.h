@@ -15,10 +15,17 @@ namespace isorim::solver {
 /// Math. Appl. 57, 2009). It is done for some dozens of neighbouring functions at a time, so the cost grows with their
 /// number. candidates(element): places in its unit cell.
 ///
-/// Throws NumericalError if there are fewer candidates than functions, or the functions depend on one another there.
+/// Returns functions that cannot be told from the others at any candidates (to `indistinct`), so that leaving them out
+/// lets the others have points; the points are incomplete then. Empty: all have points.
 template <int Dim>
-void choose_points(PatchSpace<Dim>& patch, std::vector<char> has_point,
-                   const std::function<std::vector<geometry::Point<Dim - 1>>(int element)>& candidates);
+std::vector<int> choose_points(PatchSpace<Dim>& patch, std::vector<char> has_point,
+                               const std::function<std::vector<geometry::Point<Dim - 1>>(int element)>& candidates,
+                               double indistinct);
+
+/// The same where that cannot be: throws NumericalError if there are such functions.
+template <int Dim>
+void require_points(PatchSpace<Dim>& patch, std::vector<char> has_point,
+                    const std::function<std::vector<geometry::Point<Dim - 1>>(int element)>& candidates);
 
 /// Values of an element's functions at a place but for the common denominator: sum of Bernstein polynomials.
 template <int Dim>

@@ -12,10 +12,11 @@ namespace isorim::solver {
 /// The space on the kept part of a surface.
 ///
 /// whole: the functions of the whole refined surface. face: the refined surface with its loops; kept: its elements, as
-/// bezier_elements() gives them. A function keeps a coefficient of its own if it lives on a sound cell, one of which
-/// most is kept; the others are extensions of these (extension.h), from the nearest sound cell between the same jumps.
-/// So the functions' values at the collocation points stay well conditioned whatever slivers a trim leaves of cells,
-/// and the order of approximation is kept. A part between jumps that holds no sound cell makes one of its largest.
+/// bezier_elements() gives them. A function keeps a coefficient of its own if enough of it is seen and it can be told
+/// from the others; a cell all of whose functions do is sound. The other functions are extensions (extension.h) from
+/// the nearest sound cell between the same jumps. So the functions' values at the collocation points stay well
+/// conditioned whatever slivers a trim leaves of cells, and the order of approximation is kept. In a part between jumps
+/// without a sound cell of which much is kept, elements have functions of their own, fitted to what is kept of each.
 ///
 /// Points of the tensor-product space that are kept, well off the trims, are kept; the other functions get points by
 /// choose_points(). Fields are continuous across cuts and gaps thinner than the functions' supports: refine there.

@@ -112,6 +112,8 @@ TEST(PatchTest, LinearFieldsAreExactOnDrilledBodies) {
                        clip(geometry::cylinder(1.0, 2.0), CylinderTool{{0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, 0.4, outside}),
                        kinds);
   expect_patch_test<3>("notched block", clip(block, geometry::SphereTool{{2.0, 2.0, 1.0}, 0.7, outside}), kinds);
+  expect_patch_test<3>("dented block", clip(block, geometry::SphereTool{{1.1, 0.9, 1.1}, 0.5, outside}), kinds);
+  expect_patch_test<3>("rod of a block", clip(block, CylinderTool{{1.3, 1.2, 0.0}, {0.0, 0.0, 1.0}, 0.15}), kinds);
   expect_patch_test<3>("block drilled through two faces",
                        clip(block, CylinderTool{{0.5, 0.5, 0.0}, {0.0, 0.0, 1.0}, 0.5, outside}), {{value}});
 }

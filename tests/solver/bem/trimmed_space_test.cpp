@@ -3,11 +3,14 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "geometry/intersection/clip.h"
 #include "geometry/shapes/curves.h"
+#include "geometry/shapes/solids.h"
 #include "geometry/shapes/sweeps.h"
 #include "geometry/trimming/face_locator.h"
 #include "tests/solver/bem/field_spaces.h"
@@ -172,12 +175,50 @@ TEST(TrimmedSpace, OfEverythingIsTheSpaceOfTheWhole) {
     EXPECT_EQ(trimmed.points[static_cast<std::size_t>(i)].position, whole.points[static_cast<std::size_t>(i)].position);
 }
 
-// A sliver of a face alone: its own cell has to do.
-TEST(TrimmedSpace, OfASliverStandsOnItsLargestCell) {
-  const TrimmedSurface face(unit_square(), {polygon({{0.1, 0.3}, {0.9, 0.3}, {0.9, 0.301}, {0.1, 0.301}})});
-  const FieldSpace<3> space = space_on(face, 2, 1);
-  EXPECT_GT(space.function_count(), 0);
-  EXPECT_LT(error_on(face, space, [](const Point3& x, const auto&) { return x.x() + x.y(); }), 1e-9);
+TrimmedSurface only(const TrimLoop& loop) {
+  return {unit_square(), {loop}};
+}
+
+const auto linear = [](const Point3& x, const auto&) { return 2.0 - x.x() + 3.0 * x.y(); };
+
+// What tells functions of a large cell from one another is small there.
+TEST(TrimmedSpace, OfASmallPieceOfOneCellIsWellConditioned) {
+  for (const double radius : {0.3, 0.15, 1e-2, 1e-4, 1e-6})
+    for (const int degree : {1, 2, 3, 4}) {
+      const TrimmedSurface disc = only({{geometry::circular_arc(radius, Point2(0.62, 0.58), 0.0, 2.0 * pi)}});
+      const FieldSpace<3> space = space_on(disc, degree, 0);
+      EXPECT_EQ(space.function_count(), (degree + 1) * (degree + 1));
+      EXPECT_LT(condition(collocation_matrix(space)), degree < 3 ? 100.0 : 5e4) << degree << " " << radius;
+      EXPECT_LT(error_on(disc, space, linear), 1e-12 / radius) << degree << " " << radius;
+      const TrimmedSurface corner = only(polygon({{1.0 - radius, 1.0}, {1.0, 1.0 - radius}, {1.0, 1.0}}));
+      const FieldSpace<3> small = space_on(corner, degree, 1);
+      EXPECT_LT(condition(collocation_matrix(small)), degree < 3 ? 100.0 : 5e4) << degree << " " << radius;
+      EXPECT_LT(error_on(corner, small, linear), 1e-12 / radius) << degree << " " << radius;
+    }
+}
+
+TEST(TrimmedSpace, OfAThinPieceIsWellConditioned) {
+  for (const double width : {0.1, 1e-2, 1e-3, 1e-5, 1e-8})
+    for (const int degree : {1, 2, 3})
+      for (const int refine : {0, 2}) {
+        const TrimmedSurface strip = only(polygon({{0.1, 0.2}, {0.8, 0.7}, {0.8, 0.7 + width}, {0.1, 0.2 + width}}));
+        const FieldSpace<3> space = space_on(strip, degree, refine);
+        EXPECT_LT(condition(collocation_matrix(space)), degree < 3 ? 1e3 : 1e4) << degree << " " << width;
+        // What varies less than can be told from a constant is a constant.
+        EXPECT_LT(error_on(strip, space, linear), width > 1e-5 ? 1e-10 : 3.0 * width)
+            << degree << " " << refine << " " << width;
+      }
+}
+
+// A function that is seen well, but looks like a sum of others wherever points may lie, cannot have one.
+TEST(TrimmedSpace, FunctionsThatPointsCannotTellApartFollowOthers) {
+  const geometry::SphereTool tool{{-0.6862, -0.4706, -0.0652}, 0.2192, geometry::KeptSide::outside};
+  const Boundary<3> bitten = geometry::clip(geometry::sphere(1.0), tool);
+  const TrimmedSurface& cap = std::get<TrimmedSurface>(bitten.patches[1].shape);
+  const FieldSpace<3> space = space_on(cap, 4, 2);
+  EXPECT_LT(condition(collocation_matrix(space)), 1e6);
+  EXPECT_LT(error_on(cap, space, [](const Point3& x, const auto&) { return 1.0 + x.x() - 2.0 * x.y() + x.z(); }),
+            1e-11);
 }
 
 }  // namespace
