@@ -29,6 +29,8 @@ std::vector<std::string> quantity_names(const CaseKeys& keys, int dim) {
   std::vector<std::string> names = property_names(dim);
   for (const IntegralKeys& integral : keys.integral) names.push_back(integral.name);
   for (AnalysisQuantity& quantity : analysis_quantities(keys, dim)) names.push_back(std::move(quantity.name));
+  for (const PlaneSectionKeys& section : keys.section)
+    for (const std::string& quantity : section_quantity_names()) names.push_back(section.name + "." + quantity);
   return names;
 }
 
@@ -64,7 +66,20 @@ std::pair<int, int> expected_shape(const CaseKeys& keys, const std::string& name
     if (quantity.rows == 1) return {quantity.columns, 1};
     return {quantity.rows, quantity.columns};
   }
+  for (const PlaneSectionKeys& section : keys.section)
+    for (const std::string& quantity : section_quantity_names())
+      if (section.name + "." + quantity == name) return {static_cast<int>(section_offsets(section).size()), 1};
   return value_shape(name, dim);
+}
+
+void check_sections(const CaseKeys& keys, int dim, Complaints& complaints) {
+  std::vector<std::string> taken;
+  for (const PlaneSectionKeys& section : keys.section) {
+    if (dim == 2) complaints.add(section.where, "plane sections are for solids; the shape is plane");
+    if (contains(taken, section.name))
+      complaints.add(section.where, fmt::format("the name \"{}\" is taken by another section", section.name));
+    taken.push_back(section.name);
+  }
 }
 
 void check_expectations(const CaseKeys& keys, int dim, Complaints& complaints) {
@@ -209,6 +224,7 @@ CaseFile read_case(const Value& root, const std::filesystem::path& path, const F
       check_integrals(file.keys, *dim, complaints);
       check_integrands(file, *dim, complaints);
       check_analysis(file, *dim, patch_names(file.shape), complaints);
+      check_sections(file.keys, *dim, complaints);
       check_expectations(file.keys, *dim, complaints);
       check_convergence(file.keys, *dim, complaints);
       check_poles(file.keys, *dim, complaints);

@@ -8,6 +8,7 @@
 
 #include "io/case/analysis_keys.h"
 #include "io/case/file_shape.h"
+#include "io/case/plane_section_keys.h"
 #include "io/case/schema.h"
 #include "io/case/shape_builder.h"
 #include "io/case/shape_keys.h"
@@ -78,6 +79,7 @@ struct CaseKeys {
   GeometryKeys geometry;
   PropertiesKeys properties;
   std::vector<IntegralKeys> integral;
+  std::vector<PlaneSectionKeys> section;
   ExpectKeys expect;
   OutputKeys output;
   std::optional<ConvergenceKeys> convergence;

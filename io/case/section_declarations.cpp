@@ -108,7 +108,8 @@ const Schema<ExpectKeys>& schema<ExpectKeys>() {
                          "Expected values, one a quantity (perimeter, area, volume, centroid, inertia, "
                          "principal_moments, mass, closure_defect or the name of an integral; of an analysis "
                          "unknowns, iterations, residual, balance, errors against [exact] such as boundary_l2, "
-                         "and \"NAME.value\" of a probe or boundary condition), as "
+                         "and \"NAME.value\" of a probe or boundary condition; of plane sections \"NAME.area\", "
+                         "perimeter, loops, ..., one value a plane), as "
                          "quantity = { value, rtol, atol }.");
   return declared;
 }
@@ -211,6 +212,7 @@ const Schema<CaseKeys>& schema<CaseKeys>() {
           .key("geometry", &CaseKeys::geometry, {.text = "The shape, by its \"type\".", .presence = required})
           .key("properties", &CaseKeys::properties, {.text = "How the integrals are computed."})
           .key("integral", &CaseKeys::integral, {.text = "Integrals: [[integral]], any number."})
+          .key("section", &CaseKeys::section, {.text = "Plane sections of a solid: [[section]], any number."})
           .key("expect", &CaseKeys::expect, {.text = "Expected values."})
           .key("output", &CaseKeys::output, {.text = "What is written."})
           .key("convergence", &CaseKeys::convergence, {.text = "A study of fixed Gauss rules."})

@@ -14,6 +14,7 @@
 #include "io/results/hdf5.h"
 #include "io/results/json.h"
 #include "io/results/pictures.h"
+#include "io/results/plane_sections.h"
 #include "io/results/table.h"
 
 namespace isorim::cli {
@@ -43,6 +44,7 @@ void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io
   if (output.vtk && report.fields) write_fields(model, report, folder);
   if (output.svg) io::write_boundary_svg(folder / "boundary.svg", report.title, model);
   if (output.svg) io::write_tmesh_svgs(folder, file.shape);
+  if (report.sections) io::write_sections(folder, *report.sections, output);
   if (file.keys.convergence) {
     io::write_convergence_csv(folder / "convergence.csv", study);
     io::write_convergence_svg(folder / "convergence.svg", report.title, study);

@@ -269,6 +269,28 @@ IgesText iges_text(const OrientedBoundary<2>& oriented, const WriterOptions& giv
   return finished(entities, options, report, resolution, box.largest_coordinate());
 }
 
+WriterReport write_iges_curves(const std::filesystem::path& path, std::span<const NurbsCurve<3>> curves,
+                               std::span<const std::string> names, const WriterOptions& given) {
+  const WriterOptions options = checked(given, 0);
+  Box<3> box;
+  WriterReport report;
+  report.curves = static_cast<int>(curves.size());
+  EntityList entities;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const NurbsCurve<3> curve = curves[i].knots().is_clamped() ? curves[i] : geometry::clamp(curves[i]);
+    box.extend(curve.control_points());
+    Record record = curve_record(curve);
+    if (!names.empty()) {
+      const Record property = EntityList::parameters(406).integer(1).text(names[i]);
+      record.integer(0).integer(1).integer(entities.add(406, property, {.form = 15, .subordinate = 1}));
+    }
+    entities.add(126, record);
+  }
+  constexpr double rounding = 1e-15;
+  write_file(path, finished(entities, options, report, rounding * box.diagonal(), box.largest_coordinate()).text);
+  return report;
+}
+
 WriterReport write_iges(const std::filesystem::path& path, const OrientedBoundary<3>& oriented,
                         const WriterOptions& options) {
   const IgesText file = iges_text(oriented, options);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,10 @@ WriterReport write_iges(const std::filesystem::path& path, const geometry::Orien
 /// composite curve (102) of them. `form` and `curve_tolerance` play no part.
 WriterReport write_iges(const std::filesystem::path& path, const geometry::OrientedBoundary<2>& oriented,
                         const WriterOptions& options = {});
+
+/// Writes curves in space (126), with a name each or none; a clamped curve keeps every bit, others are clamped.
+WriterReport write_iges_curves(const std::filesystem::path& path, std::span<const geometry::NurbsCurve<3>> curves,
+                               std::span<const std::string> names = {}, const WriterOptions& options = {});
 
 /// The texts of such files.
 struct IgesText {

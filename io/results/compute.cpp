@@ -15,6 +15,7 @@
 #include "io/case/curve_builder.h"
 #include "io/case/shape_builder.h"
 #include "io/expression.h"
+#include "io/results/plane_sections.h"
 #include "quadrature/parallel.h"
 #include "quadrature/rim.h"
 #include "solver/properties.h"
@@ -302,14 +303,34 @@ void add_analysis(const CaseFile& file, const Model<Dim>& model, const RunOption
   report.fields = std::make_shared<const AnyAnalysis>(AnyAnalysis{std::move(analysis)});
 }
 
+// --- Plane sections -------------------------------------------------------------------------------------------
+
+template <int Dim>
+void add_sections(const CaseFile& file, const Model<Dim>& model, const RunOptions& run, Report& report) {
+  if constexpr (Dim == 3) {
+    if (file.keys.section.empty()) return;
+    std::function<void(double)> progress;
+    if (run.progress) progress = [report = run.progress](double fraction) { report("plane sections", fraction); };
+    std::vector<SectionFamily> families = located(common_keys(file.keys.geometry).where, [&] {
+      return cut_sections(file, model.oriented.boundary, model.oriented.topology.largest_gap, progress, run.threads);
+    });
+    for (std::string& warning : section_warnings(families)) report.warnings.push_back(std::move(warning));
+    report.sections = std::make_shared<const std::vector<SectionFamily>>(std::move(families));
+  }
+}
+
 // --- Expectations ---------------------------------------------------------------------------------------------
 
 void compare_expectations(const CaseFile& file, Report& report) {
   const Quantity closure{"closure_defect", single(report.geometry.closure_defect), {}, {}, {}, ""};
   const std::vector<Quantity> of_analysis =
       report.analysis ? expected_quantities(*report.analysis) : std::vector<Quantity>();
+  const std::vector<Quantity> of_sections =
+      report.sections ? section_quantities(*report.sections) : std::vector<Quantity>();
   const auto find = [&](const std::string& name) -> const Quantity* {
     if (name == closure.name) return &closure;
+    const auto section = std::ranges::find(of_sections, name, &Quantity::name);
+    if (section != of_sections.end()) return &*section;
     const auto found = std::ranges::find(of_analysis, name, &Quantity::name);
     return found == of_analysis.end() ? report.find(name) : &*found;
   };
@@ -351,6 +372,7 @@ Report report_of(const CaseFile& file, const Model<Dim>& model, const RunOptions
     if (!is_result_integral(file, keys, Dim)) report.integrals.push_back(integrate(file, keys, model, run));
   }
   report.timings.integrate = seconds_since(start);
+  add_sections(file, model, run, report);
   add_analysis(file, model, run, report);
   check_finite(report.properties, file.path.string());
   check_finite(report.integrals, file.path.string());

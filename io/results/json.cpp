@@ -8,6 +8,7 @@
 #include "io/atomic_file.h"
 #include "io/results/analysis_json.h"
 #include "io/results/json_parts.h"
+#include "io/results/section_json.h"
 
 namespace isorim::io {
 namespace {
@@ -84,6 +85,7 @@ std::string to_json(const Report& report) {
   json["properties"] = quantities_json(report.properties);
   json["integrals"] = quantities_json(report.integrals);
   if (report.analysis) json["analysis"] = analysis_json(*report.analysis);
+  if (report.sections) json["sections"] = sections_json(*report.sections);
   json["expectations"] = expectations_json(report.expectations);
   json["timings"] = {{"read", number(report.timings.read)},
                      {"integrate", number(report.timings.integrate)},

@@ -16,6 +16,7 @@
 namespace isorim::io {
 
 struct AnyAnalysis;
+struct SectionFamily;
 
 /// A number, a vector (columns = 1) or a matrix, entry by entry along the rows.
 struct Entries {
@@ -116,6 +117,8 @@ struct Report {
   /// If the case is an analysis; its fields on the boundary, for the writers of pictures.
   std::optional<AnalysisReport> analysis;
   std::shared_ptr<const AnyAnalysis> fields;
+  /// Plane sections; null if none are asked for.
+  std::shared_ptr<const std::vector<SectionFamily>> sections;
   std::vector<ExpectationResult> expectations;
   Timings timings;
   int threads = 1;

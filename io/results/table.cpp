@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "io/analysis/analysis.h"
+#include "io/results/plane_sections.h"
 
 namespace isorim::io {
 namespace {
@@ -229,9 +230,15 @@ std::string results_text(const Report& report) {
       if (is_shown(report, quantity)) add_quantity(table, report, quantity);
     }
   }
+  if (report.sections) {
+    for (const Quantity& quantity : section_quantities(*report.sections)) {
+      if (expectation_of(report, quantity.name)) add_quantity(table, report, quantity);
+    }
+  }
   add_quantity(table, report, {"closure_defect", single(report.geometry.closure_defect), {}, {}, {}, ""});
-  return fmt::format("{}\n  {}\n{}{}{}\n{}\n  {}\n", report.title, geometry_line(report.geometry), cad_line(report),
-                     analysis_line(report), history_text(report), table.text(2), status_line(report));
+  return fmt::format("{}\n  {}\n{}{}{}\n{}\n{}  {}\n", report.title, geometry_line(report.geometry), cad_line(report),
+                     analysis_line(report), history_text(report), table.text(2),
+                     report.sections ? sections_text(*report.sections) : "", status_line(report));
 }
 
 std::string verification_text(const std::vector<VerifiedCase>& cases) {

@@ -156,7 +156,7 @@ std::string chain_path(const DrawableChain& chain, const Layout& layout, double 
   return path + (is_closed(chain, tolerance) ? "Z" : "");
 }
 
-std::string draw_chains(const std::vector<DrawableChain>& chains, const Layout& layout, double tolerance) {
+std::string draw_chains(const std::vector<DrawableChain>& chains, const Layout& layout, double tolerance, bool fill) {
   std::string closed;
   std::string open;
   for (const DrawableChain& chain : chains) {
@@ -171,7 +171,7 @@ std::string draw_chains(const std::vector<DrawableChain>& chains, const Layout& 
         "stroke-linejoin=\"round\"/>\n",
         name, path, fill);
   };
-  draw(closed, "region", "#d6e8f4");
+  draw(closed, fill ? "region" : "curves", fill ? "#d6e8f4" : "none");
   draw(open, "curves", "none");
   return result;
 }
@@ -233,7 +233,7 @@ std::string to_svg(const Drawing& drawing) {
   const std::vector<DrawableChain> drawable = drawable_chains(drawing, tolerance);
   const Layout layout = lay_out(drawing, drawn_bounds(drawing, drawable));
   return open_document(layout.width, layout.height, drawing.title) + draw_title(drawing, layout) +
-         draw_chains(drawable, layout, 1e-6 * size) +
+         draw_chains(drawable, layout, 1e-6 * size, drawing.fill) +
          (drawing.show_control_net ? draw_control_net(drawing, layout) : "") + "</svg>\n";
 }
 

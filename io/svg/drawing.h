@@ -18,6 +18,8 @@ struct Drawing {
   std::string title;
   /// The area inside the closed chains is filled by the even-odd rule, so holes stay empty; open ones are lines.
   std::vector<Chain> chains;
+  /// false: closed chains are lines as well.
+  bool fill = true;
   bool show_control_net = false;
   bool show_axes = true;
   /// Axis labels, with the unit of length where there is one.
