@@ -223,7 +223,8 @@ class SectionFitter {
     double error = 0.0;
     for (const double t : {0.15, 0.3, 0.5, 0.7, 0.85})
       error = std::max(error, (de_casteljau(points, t) - at(run, s.first + t * s.length()).point).norm());
-    if (error <= 0.5 * options_.tolerance) {
+    // At a gap the curve jumps; the spline passes through the middle.
+    if (error <= std::max(0.5 * options_.tolerance, 0.75 * section_.largest_gap)) {
       error_ = std::max(error_, error);
       segments_.push_back({s, points});
       return;

@@ -32,8 +32,8 @@ struct SectionSplineOptions {
 /// Quintic Hermite interpolation of the section curve, its tangent and its curvature at points of its arc length,
 /// bisected until the distance between them is at most half the tolerance: C2 (knots of multiplicity 3), C1 where the
 /// curvature of the section jumps (4), C0 at corners (5). The error of a segment falls as the sixth power of its
-/// length. Throws GeometryError if the tolerance is not positive, and NumericalError with the place if it cannot be
-/// met.
+/// length. Across the gaps of the section, which `error` knows of, the spline takes the middle. Throws GeometryError if
+/// the tolerance is not positive, and NumericalError with the place if it cannot be met.
 SectionSpline fit_section(const SectionCurve& curve, const SectionSplineOptions& options);
 
 NurbsCurve<3> to_space(const NurbsCurve<2>& curve, const PlaneFrame& frame);

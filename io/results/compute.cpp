@@ -371,8 +371,8 @@ Report report_of(const CaseFile& file, const Model<Dim>& model, const RunOptions
   for (const IntegralKeys& keys : file.keys.integral) {
     if (!is_result_integral(file, keys, Dim)) report.integrals.push_back(integrate(file, keys, model, run));
   }
-  report.timings.integrate = seconds_since(start);
   add_sections(file, model, run, report);
+  report.timings.integrate = seconds_since(start);
   add_analysis(file, model, run, report);
   check_finite(report.properties, file.path.string());
   check_finite(report.integrals, file.path.string());

@@ -22,7 +22,7 @@ using geometry::SectionCurve;
 using geometry::SectionSpline;
 
 /// Of the points in CSV files, relative to the size of the shape.
-constexpr double sag = 1e-5;
+constexpr double sag = 1e-4;
 /// Families of more planes are drawn in one picture alone.
 constexpr std::size_t most_pictures = 40;
 /// Of the crosses that mark points of contact, relative to the size of the shape.
