@@ -150,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"NoNormal", section("name = 'a'\n"), {"\"normal\"", "is missing"}},
         BadCase{"ZeroNormal", section("name = 'a'\nnormal = [0, 0, 0]\n"), {"the normal is zero"}},
         BadCase{"ShortNormal", section("name = 'a'\nnormal = [0, 1]\n"), {"found 2 coordinates; expected 3"}},
-        BadCase{"ShortPoint", section("name = 'a'\nnormal = [0, 0, 1]\npoint = [0]\n"), {"expected 3"}},
+        BadCase{"ShortPoint", section("name = 'a'\nnormal = [0, 0, 1]\npoint = [0]\n"), {"section[1].point", "expected a list of coordinates"}},
         BadCase{"Name", section("name = 'a b'\nnormal = [0, 0, 1]\n"), {"expected letters, digits, _ and -"}},
         BadCase{"Both",
                 section("name = 'a'\nnormal = [0, 0, 1]\noffsets = [1]\nfrom = 0\nto = 1\nstep = 1\n"),
