@@ -25,6 +25,7 @@ void require_options(const CurveFitOptions<Dim>& options) {
     refuse("a number of control points and a tolerance are given; expected one of them");
   if (options.parameter_corrections < 0)
     refuse(fmt::format("{} parameter corrections asked for", options.parameter_corrections));
+  if (options.knot_steps < 0) refuse(fmt::format("{} steps of the knots asked for", options.knot_steps));
   if (options.fairness && !(*options.fairness >= 0.0 && std::isfinite(*options.fairness)))
     refuse(fmt::format("fairness {}; expected 0 or more", *options.fairness));
   if (!(options.fairness_share >= 0.0 && std::isfinite(options.fairness_share)))
@@ -64,6 +65,29 @@ FitFrame<Dim>::FitFrame(const Points<Dim>& points, const CurveFitOptions<Dim>& o
   require_options(options_);
   require_ends(options_);
   prepared_ = prepare_points(points, options_);
+}
+
+template <int Dim>
+FitFrame<Dim> FitFrame<Dim>::thinned(int stride) const {
+  FitFrame result = *this;
+  const PreparedPoints<Dim>& all = prepared_;
+  PreparedPoints<Dim>& few = result.prepared_;
+  std::vector<Eigen::Index> kept;
+  few.corners.clear();
+  few.index.clear();
+  few.parameters.clear();
+  few.data.weights.clear();
+  for (int i = 0; i < point_count(); ++i) {
+    const bool is_corner = std::binary_search(all.corners.begin(), all.corners.end(), i);
+    const bool is_end = !options_.closed && i == point_count() - 1;
+    if (i % stride != 0 && !is_corner && !is_end) continue;
+    if (is_corner) few.corners.push_back(static_cast<int>(kept.size()));
+    kept.push_back(i);
+    few.parameters.push_back(all.parameters[static_cast<std::size_t>(i)]);
+    few.data.weights.push_back(all.data.weights[static_cast<std::size_t>(i)]);
+  }
+  few.data.points = all.data.points(Eigen::all, kept);
+  return result;
 }
 
 template <int Dim>
@@ -267,11 +291,15 @@ void FitFrame<Dim>::correct_parameters(FitState<Dim>& state, int steps) const {
   const SegmentedCurve<Dim> curve = this->curve(state);
   const FitData<Dim>& data = prepared_.data;
   double sum = 0.0;
+  double largest = 0.0;
   for (std::size_t i = 0; i < data.size(); ++i) {
     const Point<Dim> point = data.points.col(static_cast<Eigen::Index>(i));
     state.parameters[i] = curve.follow(point, state.parameters[i], steps);
-    sum += data.weights[i] * (curve.jet(state.parameters[i]).point - point).squaredNorm();
+    const double squared = (curve.jet(state.parameters[i]).point - point).squaredNorm();
+    sum += data.weights[i] * squared;
+    largest = std::max(largest, squared);
   }
+  state.max_distance = std::sqrt(largest);
   state.mean_squared = sum / static_cast<double>(data.size());
 }
 

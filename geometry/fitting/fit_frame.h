@@ -19,6 +19,8 @@ struct FitState {
   Points<Dim> control;
   /// Weighted mean of the squared distances to the points C(parameter).
   double mean_squared = 0.0;
+  /// Of the points C(parameter), not weighted.
+  double max_distance = 0.0;
   int iterations = 0;
 };
 
@@ -28,6 +30,9 @@ class FitFrame {
  public:
   /// Throws GeometryError if the options contradict each other.
   FitFrame(const Points<Dim>& points, const CurveFitOptions<Dim>& options);
+
+  /// The same with every stride-th point, corners and ends among them.
+  FitFrame thinned(int stride) const;
 
   const PreparedPoints<Dim>& prepared() const { return prepared_; }
   const CurveFitOptions<Dim>& options() const { return options_; }
@@ -56,7 +61,7 @@ class FitFrame {
   /// Solves for the control points; false if the data do not determine them (the state is then left as it was).
   bool solve(FitState<Dim>& state, const Fairness& fairness) const;
   SegmentedCurve<Dim> curve(const FitState<Dim>& state) const;
-  /// Moves every parameter towards the nearest point of the curve.
+  /// Moves every parameter towards the nearest point of the curve, and measures the distances there.
   void correct_parameters(FitState<Dim>& state, int steps) const;
 
  private:

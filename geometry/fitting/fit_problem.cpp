@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/fitting/derivative_row.h"
 #include "geometry/spline/local_basis.h"
 
 namespace isorim::geometry {
@@ -187,10 +188,10 @@ void add_fairness(const KnotVector& knots, int span, const Fairness& fairness, s
   const double mu =
       fairness.mu *
       (fairness.factors.empty() ? 1.0 : fairness.factors[static_cast<std::size_t>(span - knots.degree())]);
-  LocalBasisTable<3> table(knots.degree() + 1, 4);
+  LocalBasisTable<0> row(knots.degree() + 1, 1);
   for (const GaussPoint& gauss : rule) {
-    fill_basis_table(knots, span, knots[span] + gauss.node * length, table);
-    LocalBasisTable<0> row = table.col(fairness.derivative) * std::sqrt(mu * gauss.weight * length);
+    fill_basis_derivative(knots, span, knots[span] + gauss.node * length, fairness.derivative, row.data());
+    row *= std::sqrt(mu * gauss.weight * length);
     Point<Dim> rhs = Point<Dim>::Zero();
     rows.add(span - knots.degree(), row.data(), rhs.data());
   }

@@ -79,15 +79,79 @@ Bending adaptive_bending(const SegmentedCurve<Dim>& curve, Interval part, int de
   return {left.length + right.length, left.squared_curvature + right.squared_curvature, left.error + right.error};
 }
 
-/// C' x C'' on a segment, in Bernstein form and without a positive factor; empty for polygons.
-BernsteinCoefficients curvature_numerator(const Points<2>& points) {
-  const Eigen::Index p = points.cols() - 1;
-  if (p < 2) return {};
-  const Points<2> first = points.rightCols(p) - points.leftCols(p);
-  const Points<2> second = first.rightCols(p - 1) - first.leftCols(p - 1);
-  const Points<2> turned = (Eigen::Matrix2d() << 0, 1, -1, 0).finished() * second;
-  return multiply(first.row(0).transpose(), turned.row(0).transpose()) +
-         multiply(first.row(1).transpose(), turned.row(1).transpose());
+/// Coefficients on the stack.
+using NumeratorCoefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * KnotVector::max_degree, 1>;
+
+/// C(n, k), k = 0 .. n.
+std::vector<double> binomials(int n) {
+  std::vector<double> row{1.0};
+  for (int k = 1; k <= n; ++k) row.push_back(row.back() * (n - k + 1) / k);
+  return row;
+}
+
+/// What the product of two polynomials in Bernstein form of degrees p - 1 and p - 2 needs; p >= 2.
+struct ProductBinomials {
+  explicit ProductBinomials(int p) : first(binomials(p - 1)), second(binomials(p - 2)), product(binomials(2 * p - 3)) {}
+
+  std::vector<double> first;
+  std::vector<double> second;
+  std::vector<double> product;
+};
+
+/// C' x C'' on a segment, in Bernstein form of degree 2p - 3 and without a positive factor.
+NumeratorCoefficients curvature_numerator(Eigen::Map<const Points<2>> points, const ProductBinomials& of) {
+  const int p = static_cast<int>(points.cols()) - 1;
+  NumeratorCoefficients numerator = NumeratorCoefficients::Zero(2 * p - 2);
+  for (int i = 0; i < p; ++i) {
+    const Vector2 a = of.first[static_cast<std::size_t>(i)] * (points.col(i + 1) - points.col(i));
+    for (int j = 0; j + 1 < p; ++j) {
+      const Vector2 b = points.col(j + 2) - 2.0 * points.col(j + 1) + points.col(j);
+      numerator[i + j] += of.second[static_cast<std::size_t>(j)] * (a[0] * b[1] - a[1] * b[0]);
+    }
+  }
+  for (int k = 0; k < numerator.size(); ++k) numerator[k] /= of.product[static_cast<std::size_t>(k)];
+  return numerator;
+}
+
+/// Whether the coefficients are first above the noise on one side and then on the other: there is one root.
+bool changes_once(const NumeratorCoefficients& numerator, double noise) {
+  int changes = 0;
+  for (Eigen::Index i = 0; i < numerator.size(); ++i) {
+    if (!(std::abs(numerator[i]) > noise)) return false;
+    if (i > 0 && (numerator[i] > 0.0) != (numerator[i - 1] > 0.0)) ++changes;
+  }
+  return changes == 1;
+}
+
+/// The root of a polynomial that changes its sign once on [0, 1], by bisection and secants (Illinois method).
+double only_root(const NumeratorCoefficients& numerator) {
+  constexpr std::size_t capacity = 2 * KnotVector::max_degree;
+  const auto value = [&](double t) {
+    std::array<double, capacity> net;
+    std::copy_n(numerator.data(), numerator.size(), net.begin());
+    for (std::size_t count = static_cast<std::size_t>(numerator.size()) - 1; count > 0; --count)
+      for (std::size_t i = 0; i < count; ++i) net[i] += t * (net[i + 1] - net[i]);
+    return net[0];
+  };
+  double low = 0.0;
+  double high = 1.0;
+  double at_low = numerator[0];
+  double at_high = numerator[numerator.size() - 1];
+  for (int i = 0; i < 100 && high - low > 1e-15; ++i) {
+    const double t = low + (high - low) * at_low / (at_low - at_high);
+    const double at = value(t);
+    if (at == 0.0 || t <= low || t >= high) return t;
+    if ((at > 0.0) == (at_high > 0.0)) {
+      high = t;
+      at_high = at;
+      at_low *= 0.5;
+    } else {
+      low = t;
+      at_low = at;
+      at_high *= 0.5;
+    }
+  }
+  return 0.5 * (low + high);
 }
 
 /// Where the curvature changes its sign inside the domain.
@@ -100,16 +164,23 @@ std::vector<double> find_sign_changes(const SegmentedCurve<2>& curve) {
     if (last == -sign) changes.push_back(u);
     last = sign;
   };
+  const int degree = static_cast<int>(curve.segment_points(0).cols()) - 1;
+  if (degree < 2) return changes;
+  const ProductBinomials binomials_of_product(degree);
   for (int i = 0; i < curve.segment_count(); ++i) {
-    const Points<2> points = curve.segment_points(i);
+    const Eigen::Map<const Points<2>> points = curve.segment_points(i);
     const Interval domain = curve.segment_domain(i);
     const Eigen::Index p = points.cols() - 1;
     const double size = (points.rightCols(p) - points.leftCols(p)).cwiseAbs().maxCoeff();
     const double noise = rounding * size * size;
-    const BernsteinCoefficients numerator = curvature_numerator(points);
-    if (numerator.size() == 0) continue;
+    const NumeratorCoefficients numerator = curvature_numerator(points, binomials_of_product);
     if (numerator.minCoeff() > noise || numerator.maxCoeff() < -noise) {
       append(domain.first, numerator[0] > 0.0 ? 1 : -1);
+      continue;
+    }
+    if (changes_once(numerator, noise)) {
+      append(domain.first, numerator[0] > 0.0 ? 1 : -1);
+      append(domain.first + only_root(numerator) * domain.length(), numerator[0] > 0.0 ? -1 : 1);
       continue;
     }
     const SignChart chart = sign_chart(numerator, noise);

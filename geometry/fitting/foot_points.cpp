@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/fitting/local_bezier.h"
 #include "geometry/spline/corner_cutting.h"
 
 namespace isorim::geometry {
@@ -15,7 +16,7 @@ constexpr int capacity = KnotVector::max_degree + 1;
 
 /// Bézier points on the stack.
 template <int Dim>
-using LocalNet = Eigen::Matrix<double, Dim, Eigen::Dynamic, Eigen::ColMajor, Dim, capacity>;
+using StackNet = Eigen::Matrix<double, Dim, Eigen::Dynamic, Eigen::ColMajor, Dim, capacity>;
 
 /// De Casteljau's algorithm; derivatives with respect to s in [0, 1].
 template <int Dim>
@@ -37,7 +38,7 @@ CurveJet<Dim> bezier_jet(const double* points, int degree, double s) {
 /// The Bernstein coefficients (degree 2p - 1, without a positive factor) of the derivative of |C(s)|^2, the curve
 /// seen from the target.
 template <int Dim>
-std::array<double, 2 * capacity> distance_derivative(const LocalNet<Dim>& net) {
+std::array<double, 2 * capacity> distance_derivative(const StackNet<Dim>& net) {
   const int p = static_cast<int>(net.cols()) - 1;
   std::array<double, 2 * capacity> sums{};
   std::array<double, capacity> binomial{};
@@ -71,8 +72,8 @@ int sign_variations(const std::array<double, 2 * capacity>& coefficients, int co
 
 /// Cuts the net at its middle.
 template <int Dim>
-std::array<LocalNet<Dim>, 2> halve(LocalNet<Dim> net) {
-  LocalNet<Dim> left = net;
+std::array<StackNet<Dim>, 2> halve(StackNet<Dim> net) {
+  StackNet<Dim> left = net;
   const Eigen::Index p = net.cols() - 1;
   for (Eigen::Index count = p; count > 0; --count) {
     for (Eigen::Index i = 0; i < count; ++i) net.col(i) = 0.5 * (net.col(i) + net.col(i + 1));
@@ -83,7 +84,7 @@ std::array<LocalNet<Dim>, 2> halve(LocalNet<Dim> net) {
 
 /// Squared distance from the origin to the box of the points.
 template <int Dim>
-double box_distance_squared(const LocalNet<Dim>& net) {
+double box_distance_squared(const StackNet<Dim>& net) {
   const Vector<Dim> low = net.rowwise().minCoeff();
   const Vector<Dim> high = net.rowwise().maxCoeff();
   return low.cwiseMax(-high).cwiseMax(0.0).squaredNorm();
@@ -113,12 +114,14 @@ SegmentedCurve<Dim>::SegmentedCurve(const KnotVector& knots, const Points<Dim>& 
   const std::vector<int> spans = nonempty_spans(knots);
   starts_.reserve(spans.size() + 1);
   points_.reserve(spans.size() * static_cast<std::size_t>(Dim * (degree_ + 1)));
-  Eigen::MatrixXd net(Dim, degree_ + 1);
+  LocalNet<Dim> control;
+  LocalNet<Dim> bezier;
   for (const int span : spans) {
     starts_.push_back(knots[span]);
-    net = points.middleCols(span - degree_, degree_ + 1);
-    cut_to_bezier(knots, span, net);
-    points_.insert(points_.end(), net.data(), net.data() + net.size());
+    for (int i = 0; i <= degree_; ++i) control[static_cast<std::size_t>(i)] = points.col(span - degree_ + i);
+    cut_to_bezier<Dim>(&knots.knots()[static_cast<std::size_t>(span - degree_ + 1)], control, degree_, bezier);
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(degree_); ++i)
+      points_.insert(points_.end(), bezier[i].data(), bezier[i].data() + Dim);
   }
   starts_.push_back(knots.domain().last);
   build_boxes();
@@ -229,13 +232,13 @@ void SegmentedCurve<Dim>::search(Search& state, int node) const {
 template <int Dim>
 void SegmentedCurve<Dim>::search_segment(Search& state, int segment) const {
   struct Part {
-    LocalNet<Dim> net;
+    StackNet<Dim> net;
     double first;
     double last;
   };
   constexpr double narrowest = 1e-9;
   const Interval domain = segment_domain(segment);
-  const LocalNet<Dim> net = segment_points(segment).colwise() - state.target;
+  const StackNet<Dim> net = segment_points(segment).colwise() - state.target;
   const int p = degree_;
   const auto offer = [&](double s) {
     state.offer(domain.first + s * domain.length(), state.target + bezier_jet<Dim>(net.data(), p, s).point);

@@ -76,21 +76,18 @@ template <int Dim>
       fmt::format("curve fit: the points do not determine all {} control points; give fewer", control_points));
 }
 
-/// Knots where the errors are: starting from uniform ones, as many as half the control points.
+/// Knots where the errors are: starting from uniform ones for seven tenths of the control points.
 template <int Dim>
 FitState<Dim> grow_knots(const FitFrame<Dim>& frame, int control_points) {
-  constexpr int corrections = 2;
-  const int first = std::max(frame.fewest_control_points(), control_points / 2);
+  const int first = std::max(frame.fewest_control_points(), 7 * control_points / 10);
   FitState<Dim> state = frame.start(FitKnots::uniform, first);
   if (!frame.solve(state, {})) {
     state = frame.start(FitKnots::piegl_tiller, first);
     if (!frame.solve(state, {})) refuse<Dim>(control_points);
   }
   while (true) {
-    for (int i = 0; i < corrections; ++i) {
-      frame.correct_parameters(state, 1);
-      if (!frame.solve(state, {})) refuse<Dim>(control_points);
-    }
+    frame.correct_parameters(state, 1);
+    if (!frame.solve(state, {})) refuse<Dim>(control_points);
     const int have = frame.control_points(state.breakpoints);
     if (have == control_points) return state;
     if (!add_knots(frame, std::min(control_points - have, std::max(1, have / 4)), state)) refuse<Dim>(control_points);
@@ -112,27 +109,17 @@ Fairness choose_fairness(const FitFrame<Dim>& frame, const FitState<Dim>& state)
   return fairness;
 }
 
-template <int Dim>
-double largest_distance(const FitFrame<Dim>& frame, const FitState<Dim>& state) {
-  const SegmentedCurve<Dim> curve = frame.curve(state);
-  double largest = 0.0;
-  for (std::size_t i = 0; i < state.parameters.size(); ++i)
-    largest = std::max(
-        largest,
-        (curve.jet(state.parameters[i]).point - frame.prepared().data.points.col(static_cast<Eigen::Index>(i))).norm());
-  return largest;
-}
-
-/// Lobes of curvature that are lower than the distances of the data are no shape but noise: the fairness term is made
-/// stronger around them, the lowest first, until they are gone; what costs too much distance is undone.
+/// Lobes of curvature that are lower than half the distances of the data are no shape but noise: the fairness term is
+/// made stronger around them, the lowest first, until they are gone; what costs too much distance is undone.
 void smooth_low_lobes(const FitFrame<2>& frame, Fairness fairness, FitState<2>& state) {
   constexpr double stronger = 8.0;
   constexpr double strongest = 1e6;
-  constexpr double rms_growth = 1.3;
-  constexpr double max_growth = 1.2;
+  constexpr double low = 0.5;
+  constexpr double rms_growth = 1.2;
+  constexpr double max_growth = 1.05;
   if (!(fairness.mu > 0.0) || fairness.derivative > frame.degree()) return;
   const double level = std::sqrt(state.mean_squared);
-  const double most = max_growth * largest_distance(frame, state);
+  const double most = max_growth * state.max_distance;
   const std::size_t spans = state.breakpoints.size() - 1;
   fairness.factors.assign(spans, 1.0);
   const auto span_of = [&](double u) {
@@ -145,7 +132,7 @@ void smooth_low_lobes(const FitFrame<2>& frame, Fairness fairness, FitState<2>& 
     const CurvatureLobe* lowest = nullptr;
     const std::vector<CurvatureLobe> lobes = curvature_lobes(frame.curve(state), frame.options().closed);
     for (const CurvatureLobe& lobe : lobes)
-      if (lobe.height < level && (lowest == nullptr || lobe.height < lowest->height) &&
+      if (lobe.height < low * level && (lowest == nullptr || lobe.height < lowest->height) &&
           is_kept[span_of(0.5 * (lobe.first + lobe.last))] == 0)
         lowest = &lobe;
     if (lowest == nullptr) return;
@@ -159,7 +146,7 @@ void smooth_low_lobes(const FitFrame<2>& frame, Fairness fairness, FitState<2>& 
     }
     bool is_good = frame.solve(next, next_fairness);
     if (is_good) frame.correct_parameters(next, 1);
-    is_good = is_good && std::sqrt(next.mean_squared) <= rms_growth * level && largest_distance(frame, next) <= most;
+    is_good = is_good && std::sqrt(next.mean_squared) <= rms_growth * level && next.max_distance <= most;
     if (is_good) {
       state = std::move(next);
       fairness = std::move(next_fairness);
@@ -170,23 +157,61 @@ void smooth_low_lobes(const FitFrame<2>& frame, Fairness fairness, FitState<2>& 
   }
 }
 
-}  // namespace
-
+/// Knots and parameters improved by turns.
 template <int Dim>
-FitState<Dim> free_fit(const FitFrame<Dim>& frame, int control_points) {
+FitState<Dim> find_knots(const FitFrame<Dim>& frame, int control_points) {
   constexpr int corrections = 4;
-  constexpr int steps = 5;
   FitState<Dim> state = grow_knots(frame, control_points);
+  double damping = 1e-4;
+  for (int i = 0; i < frame.options().knot_steps; ++i) {
+    frame.correct_parameters(state, 1);
+    const Fairness fairness = choose_fairness(frame, state);
+    if (!frame.solve(state, fairness)) refuse<Dim>(control_points);
+    if (!move_knots(frame, fairness, state, damping)) break;
+  }
   for (int i = 0; i < corrections; ++i) {
     frame.correct_parameters(state, 1);
     if (!frame.solve(state, choose_fairness(frame, state))) refuse<Dim>(control_points);
   }
-  double damping = 1e-3;
-  for (int i = 0; i < steps; ++i) {
-    frame.correct_parameters(state, 2);
-    const Fairness fairness = choose_fairness(frame, state);
-    if (!frame.solve(state, fairness)) refuse<Dim>(control_points);
-    if (!move_knots(frame, fairness, state, damping)) break;
+  return state;
+}
+
+/// Takes the parameters of the frame's points from those of some of them: what correction has changed is interpolated.
+template <int Dim>
+void spread_parameters(const FitFrame<Dim>& frame, const FitFrame<Dim>& few, FitState<Dim>& state) {
+  const std::vector<double>& before = few.prepared().parameters;
+  const auto change = [&](std::size_t i) {
+    const double moved = state.parameters[i] - before[i];
+    return frame.options().closed ? moved - std::round(moved) : moved;
+  };
+  std::vector<double> parameters = frame.prepared().parameters;
+  std::size_t i = 0;
+  for (double& u : parameters) {
+    while (i + 1 < before.size() && before[i + 1] <= u) ++i;
+    const std::size_t next = i + 1 < before.size() ? i + 1 : (frame.options().closed ? 0 : i);
+    const double width = next > i ? before[next] - before[i] : 1.0 - before[i];
+    const double share = width > 0.0 ? std::clamp((u - before[i]) / width, 0.0, 1.0) : 0.0;
+    u += (1.0 - share) * change(i) + share * change(next);
+    if (frame.options().closed) u -= std::floor(u);
+    u = std::clamp(u, 0.0, 1.0);
+  }
+  state.parameters = std::move(parameters);
+}
+
+}  // namespace
+
+template <int Dim>
+FitState<Dim> free_fit(const FitFrame<Dim>& frame, int control_points) {
+  // Knots are found from as many points; more tell no more about them.
+  constexpr int points_per_knot = 20;
+  const int stride = frame.point_count() / (points_per_knot * control_points);
+  FitState<Dim> state;
+  if (stride >= 2) {
+    const FitFrame<Dim> few = frame.thinned(stride);
+    state = find_knots(few, control_points);
+    spread_parameters(frame, few, state);
+  } else {
+    state = find_knots(frame, control_points);
   }
   frame.correct_parameters(state, 2);
   const Fairness fairness = choose_fairness(frame, state);

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "geometry/fitting/bordered_cholesky.h"
+#include "geometry/fitting/derivative_row.h"
+#include "geometry/fitting/local_bezier.h"
 #include "geometry/spline/local_basis.h"
 
 namespace isorim::geometry {
@@ -15,34 +17,12 @@ namespace {
 
 constexpr std::size_t capacity = KnotVector::max_degree + 1;
 
-template <int Dim>
-using LocalNet = std::array<Vector<Dim>, capacity>;
-
-/// The Bézier points of a span from its p + 1 control points; knots[0 .. 2p - 1] are those around the span, which is
-/// [knots[p - 1], knots[p]]. Point j is the polar form at p - j starts and j ends.
-template <int Dim>
-LocalNet<Dim> to_bezier(const double* knots, const LocalNet<Dim>& control, int p) {
-  LocalNet<Dim> bezier;
-  for (int j = 0; j <= p; ++j) {
-    LocalNet<Dim> net = control;
-    for (int r = 1; r <= p; ++r) {
-      const double x = r <= p - j ? knots[p - 1] : knots[p];
-      for (int i = p; i >= r; --i) {
-        const std::size_t at = static_cast<std::size_t>(i);
-        const double left = knots[i - 1];
-        const double share = (x - left) / (knots[i + p - r] - left);
-        net[at] = (1.0 - share) * net[at - 1] + share * net[at];
-      }
-    }
-    bezier[static_cast<std::size_t>(j)] = net[static_cast<std::size_t>(p)];
-  }
-  return bezier;
-}
-
 /// The derivative of order r of a Bézier curve over an interval of this length, at s in [0, 1].
 template <int Dim>
-Vector<Dim> bezier_derivative(LocalNet<Dim> net, int p, int r, double length, double s) {
+Vector<Dim> bezier_derivative(const LocalNet<Dim>& points, int p, int r, double length, double s) {
   if (r > p) return Vector<Dim>::Zero();
+  LocalNet<Dim> net;
+  std::copy_n(points.begin(), p + 1, net.begin());
   for (int k = 0; k < r; ++k)
     for (std::size_t i = 0; i < static_cast<std::size_t>(p - k); ++i) net[i] = (p - k) / length * (net[i + 1] - net[i]);
   for (int count = p - r; count > 0; --count)
@@ -55,7 +35,7 @@ template <int Dim>
 std::vector<LocalNet<Dim>> knot_derivatives(const KnotVector& knots, const Points<Dim>& control, int span) {
   const int p = knots.degree();
   const int total = static_cast<int>(knots.knots().size());
-  std::vector<LocalNet<Dim>> result;
+  std::vector<LocalNet<Dim>> result(static_cast<std::size_t>(2 * p));
   for (int k = span - p + 1; k <= span + p; ++k) {
     // In the vector with knot k doubled, knots from k + 1 on are one place further.
     const int shifted = k <= span ? span + 1 : span;
@@ -71,7 +51,7 @@ std::vector<LocalNet<Dim>> knot_derivatives(const KnotVector& knots, const Point
       const double width = knots[i + p] - knots[i];
       if (width > 0.0) slope = (control.col(i - 1) - control.col(i)) / width;
     }
-    result.push_back(to_bezier<Dim>(around.data(), slopes, p));
+    cut_to_bezier<Dim>(around.data(), slopes, p, result[static_cast<std::size_t>(k - (span - p + 1))]);
   }
   return result;
 }
@@ -201,7 +181,7 @@ void StepSystem<Dim>::add_span(int span, const std::vector<int>& members) {
   const Eigen::Index rows = static_cast<Eigen::Index>(members.size() + gauss.size()) * Dim;
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(rows, columns);
   Eigen::VectorXd residual(rows);
-  LocalBasisTable<4> table(p_ + 1, 5);
+  LocalBasisTable<2> table(p_ + 1, 3);
   Eigen::Index row = 0;
   const auto add_rows = [&](const Eigen::VectorXd& values, double factor, const Vector<Dim>& value) {
     for (int j = 0; j <= p_; ++j)
@@ -223,18 +203,20 @@ void StepSystem<Dim>::add_span(int span, const std::vector<int>& members) {
   const double mu =
       fairness_.mu * (fairness_.factors.empty() ? 1.0 : fairness_.factors[static_cast<std::size_t>(span - p_)]);
   for (const GaussPoint& point : gauss) {
-    fill_basis_table(knots, span, start + point.node * length, table);
     const double factor = std::sqrt(mu * point.weight * length);
-    const auto derivative = [&](int d) -> Vector<Dim> {
-      return state_.control.middleCols(span - p_, p_ + 1).lazyProduct(table.col(d));
+    const auto derivative = [&](int d, Eigen::Index column) -> Vector<Dim> {
+      if (d > p_) return Vector<Dim>::Zero();
+      fill_basis_derivative(knots, span, start + point.node * length, d, table.col(column).data());
+      return state_.control.middleCols(span - p_, p_ + 1).lazyProduct(table.col(column));
     };
-    const Vector<Dim> value = derivative(order);
-    add_rows(table.col(order), factor, value);
+    const Vector<Dim> value = derivative(order, 1);
+    const Vector<Dim> next = derivative(order + 1, 2);
+    add_rows(table.col(1), factor, value);
     for (int k = 0; k < 2 * p_; ++k) {
       // Gauss points and lengths move with the ends of the span, knots p - 1 and p of those around it.
       Vector<Dim> change = bezier_derivative<Dim>(moves[static_cast<std::size_t>(k)], p_, order, length, point.node);
-      if (k == p_ - 1) change += (1.0 - point.node) * derivative(order + 1) - 0.5 / length * value;
-      if (k == p_) change += point.node * derivative(order + 1) + 0.5 / length * value;
+      if (k == p_ - 1) change += (1.0 - point.node) * next - 0.5 / length * value;
+      if (k == p_) change += point.node * next + 0.5 / length * value;
       jacobian.col((p_ + 1) * Dim + k).segment<Dim>(row) = factor * change;
     }
     row += Dim;
@@ -274,15 +256,15 @@ double roughness(const FitFrame<Dim>& frame, const Fairness& fairness, const Fit
   if (fairness.derivative > p) return 0.0;
   const KnotVector knots = frame.space(state.breakpoints).knots;
   const std::vector<GaussPoint> gauss = gauss_points(std::min(p - fairness.derivative + 1, most_gauss_points));
-  LocalBasisTable<3> table(p + 1, 4);
+  LocalBasisTable<0> table(p + 1, 1);
   double sum = 0.0;
   for (int span = p; span < knots.basis_count(); ++span) {
     const double length = knots[span + 1] - knots[span];
     if (!(length > 0.0)) continue;
     const double factor = fairness.factors.empty() ? 1.0 : fairness.factors[static_cast<std::size_t>(span - p)];
     for (const GaussPoint& point : gauss) {
-      fill_basis_table(knots, span, knots[span] + point.node * length, table);
-      const Vector<Dim> value = state.control.middleCols(span - p, p + 1).lazyProduct(table.col(fairness.derivative));
+      fill_basis_derivative(knots, span, knots[span] + point.node * length, fairness.derivative, table.data());
+      const Vector<Dim> value = state.control.middleCols(span - p, p + 1).lazyProduct(table);
       sum += factor * point.weight * length * value.squaredNorm();
     }
   }

@@ -161,6 +161,31 @@ TEST(CurvatureLobes, LieBetweenTheInflections) {
   EXPECT_NEAR(lobes[0].height, height, 0.03 * height);
 }
 
+/// With many points knots are found from a part of them: the curve must be as near as to all, open and closed, and
+/// with corners in a place that thinning does not meet by chance.
+TEST(FreeFit, ManyPoints) {
+  const int count = 20011;
+  for (const bool closed : {true, false})
+    for (const double corner_angle : {0.0, 30.0}) {
+      Points<2> points(2, count);
+      for (int i = 0; i < count; ++i) {
+        const double t = 2 * pi * i / (closed ? count : count - 1);
+        const double kink = corner_angle > 0.0 ? 0.3 * std::abs(t - 2 * pi * 7001 / count) : 0.2 * std::sin(11 * t);
+        points.col(i) = (1.0 + 0.2 * std::cos(3 * t) + kink * (closed ? std::sin(0.5 * t) : 1.0)) *
+                        Point2(std::cos(t), std::sin(t));
+      }
+      CurveFitOptions<2> options;
+      options.closed = closed;
+      options.corner_angle = corner_angle;
+      options.control_points = 80;
+      const CurveFit<2> fit = fit_points(points, options);
+      options.method = FitMethod::fixed_knots;
+      const CurveFit<2> fixed = fit_points(points, options);
+      EXPECT_LT(fit.quality.rms_distance, 0.8 * fixed.quality.rms_distance) << closed << corner_angle;
+      EXPECT_LT(fit.quality.max_distance, fixed.quality.max_distance) << closed << corner_angle;
+    }
+}
+
 /// A circle with noise: the lobes that the noise makes are smoothed away.
 TEST(FreeFit, NoiseMakesNoInflections) {
   Random random(8);
