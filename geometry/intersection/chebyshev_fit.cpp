@@ -87,17 +87,16 @@ void append_stretches(const std::function<double(double)>& function, Interval pa
   append_stretches(function, {part.middle(), part.last}, noise, stretches);
 }
 
-/// The largest distance between the interpolation points.
-double largest_distance(const std::function<Point2(double)>& curve, Interval part, const Points<2>& points) {
+/// Whether the polynomial is nowhere farther than the tolerance, between the interpolation points.
+bool meets(const std::function<Point2(double)>& curve, Interval part, const Points<2>& points, double tolerance) {
   const int samples = 2 * static_cast<int>(points.cols()) + 1;
-  double distance = 0.0;
   for (int k = 0; k < samples; ++k) {
     const double t = (k + 0.5) / samples;
     const Point2 fitted(evaluate(BernsteinCoefficients(points.row(0).transpose()), t),
                         evaluate(BernsteinCoefficients(points.row(1).transpose()), t));
-    distance = std::max(distance, (fitted - curve(part.first + part.length() * t)).norm());
+    if (!((fitted - curve(part.first + part.length() * t)).norm() <= tolerance)) return false;
   }
-  return distance;
+  return true;
 }
 
 void append_fits(const std::function<Point2(double)>& curve, Interval part, double tolerance,
@@ -107,7 +106,7 @@ void append_fits(const std::function<Point2(double)>& curve, Interval part, doub
     for (int k = 0; k <= degree; ++k)
       values.col(k) = curve(part.first + part.length() * chebyshev_points(degree)[static_cast<std::size_t>(k)]);
     const Points<2> points = interpolate_bernstein(values);
-    if (largest_distance(curve, part, points) > tolerance) continue;
+    if (!meets(curve, part, points, tolerance)) continue;
     pieces.push_back(NurbsCurve<2>::from_points(KnotVector::bezier(degree), points));
     return;
   }

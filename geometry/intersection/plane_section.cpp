@@ -26,6 +26,8 @@ namespace {
 
 /// Relative to the size: ends that count as the same without more ado.
 constexpr double finest_gap = 1e-12;
+/// How much wider than between patches gaps may be between the curves in which a plane cuts them.
+constexpr double gap_growth = 100.0;
 /// Relative to the size: points this near to a curve lie on it (double roots are known to the root of rounding), and
 /// this near to each other are the same.
 constexpr double contact_distance = 2e-6;
@@ -95,7 +97,7 @@ class CurveMaker {
     std::vector<ChainLink> links;
     for (const SectionPiece& piece : pieces) links.push_back(link(piece));
     std::vector<SectionCurve> result;
-    for (const LinkChain& chain : join_links(links, finest_gap * size_, gap_tolerance_ * size_)) {
+    for (const LinkChain& chain : join_links(links, finest_gap * size_, gap_growth * gap_tolerance_ * size_)) {
       SectionCurve curve;
       curve.is_closed = chain.is_closed;
       for (const int i : chain.links) curve.pieces.push_back(pieces[static_cast<std::size_t>(i)]);

@@ -125,8 +125,9 @@ struct SectionOptions {
   /// Distances from the plane that count as zero, relative to the diagonal of the boundary's box: a hundred times
   /// rounding.
   double tolerance = 1e-13;
-  /// Up to which gaps between patches are bridged, relative to the same diagonal. The nearest ends are joined first, so
-  /// a large value costs no features.
+  /// How wide gaps between patches may be, relative to the same diagonal. Where a plane meets the edge of two patches
+  /// at a small angle the gap between its curves is wider: ends are joined up to a hundred times this, the nearest
+  /// first, so that no features are lost.
   double gap_tolerance = 1e-6;
 };
 
