@@ -87,7 +87,10 @@ void solve_with_refinement(const CaseFile& file, const geometry::OrientedBoundar
   const auto problem_on = [&](const solver::FieldSpace<Dim>& space) {
     analysis.setting = statement.on(space);
     // Of the first step: they speak of elements as the case divides them.
-    if (history.steps.empty()) warnings = analysis.setting.warnings;
+    if (history.steps.empty()) {
+      warnings = analysis.setting.warnings;
+      check_exact(file, space);
+    }
     return analysis.setting.problem;
   };
   const auto after_step = [&](const solver::AdaptiveResult<Dim>& result) {

@@ -6,10 +6,12 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "geometry/errors.h"
 #include "io/analysis/adaptive_analysis.h"
 #include "io/analysis/boundary_integrals.h"
+#include "io/analysis/points.h"
 #include "io/analysis/sampling.h"
 #include "io/analysis/solution_errors.h"
 #include "io/case/analysis_checks.h"
@@ -21,18 +23,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::string equation_name(EquationKind equation) {
-  switch (equation) {
-    case EquationKind::laplace:
-      return "laplace";
-    case EquationKind::poisson:
-      return "poisson";
-    case EquationKind::elasticity:
-      break;
-  }
-  return "elasticity";
 }
 
 solver::SolveOptions solve_options(const CaseFile& file, const RunOptions& run) {
@@ -68,6 +58,26 @@ void evaluate_points(const CaseFile& file, const RunOptions& run, Analysis<Dim>&
     report.messages.push_back(fmt::format("probe \"{}\": {} of {} points lie outside the domain", samples.name, outside,
                                           samples.points.cols()));
   }
+  for (const FieldSamples& samples : report.grids) {
+    if (samples.outside_count() == samples.location.size())
+      report.messages.push_back(fmt::format("grid \"{}\": all of its points lie outside the domain", samples.name));
+  }
+}
+
+/// A dense matrix that the machine cannot hold is better refused than begun.
+template <int Dim>
+void check_memory(const CaseFile& file, const BoundaryValueProblem<Dim>& setting) {
+  if (!file.keys.solve || file.keys.solve->method != SolveMethodKind::dense) return;
+  const double unknowns = static_cast<double>(setting.space.function_count()) * component_count(file.keys, Dim);
+  const double needed = 8.0 * unknowns * unknowns;
+  const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (needed < present) return;
+  constexpr double gigabyte = 1024.0 * 1024.0 * 1024.0;
+  throw InputError(fmt::format(
+      "{}: {}: a dense matrix of {:g} unknowns takes {:.1f} GB; the machine has {:.1f} GB; expected method = "
+      "\"compressed\" or fewer unknowns",
+      file.keys.solve->where.place.describe(), file.keys.solve->where.path, unknowns, needed / gigabyte,
+      present / gigabyte));
 }
 
 /// Bytes.
@@ -81,7 +91,7 @@ template <int Dim>
 void describe_solution(const CaseFile& file, Analysis<Dim>& analysis) {
   AnalysisReport& report = analysis.report;
   const solver::Solution<Dim>& solution = analysis.solution;
-  report.equation = equation_name(file.keys.analysis->equation);
+  report.equation = name_of(file.keys.analysis->equation, equation_names);
   report.exterior = file.keys.analysis->exterior;
   report.components = component_count(file.keys, Dim);
   report.elements = analysis.setting.space.table.elements.size();
@@ -110,12 +120,16 @@ template <int Dim>
 Analysis<Dim> analyse(const CaseFile& file, const geometry::OrientedBoundary<Dim>& boundary, const RunOptions& run) {
   Analysis<Dim> analysis;
   const Clock::time_point start = Clock::now();
+  // What a file of points lacks should not be found out after the solution.
+  for (const ProbeKeys& keys : file.keys.probe) probe_points(keys, Dim, file.path.parent_path());
   Clock::time_point discretised = start;
   if (adapt_keys(file.keys)) {
     solve_with_refinement(file, boundary, run, solve_options(file, run), analysis);
   } else {
     const ProblemStatement<Dim> statement(file, boundary);
     analysis.setting = statement.on(solver::field_space(boundary, statement.discretisation()));
+    check_exact(file, analysis.setting.space);
+    check_memory(file, analysis.setting);
     discretised = Clock::now();
     analysis.solution = solver::solve(analysis.setting.problem, analysis.setting.space, solve_options(file, run));
   }

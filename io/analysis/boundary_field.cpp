@@ -27,9 +27,9 @@ quadrature::TargetRules<Dim> sampling_rules(const solver::FieldSpace<Dim>& space
 }
 
 template <int Dim>
-BoundarySampler<Dim>::BoundarySampler(const solver::Problem<Dim>& problem, const solver::FieldSpace<Dim>& space,
-                                      const solver::Solution<Dim>& solution, const quadrature::TargetRules<Dim>& rules)
-    : problem_(&problem), space_(&space), solution_(&solution), rules_(&rules), data_(problem) {}
+BoundarySampler<Dim>::BoundarySampler(const solver::FieldSpace<Dim>& space, const solver::Solution<Dim>& solution,
+                                      const quadrature::TargetRules<Dim>& rules)
+    : space_(&space), solution_(&solution), rules_(&rules) {}
 
 template <int Dim>
 const BoundarySample<Dim>& BoundarySampler<Dim>::sample(int element) {
@@ -46,36 +46,7 @@ const BoundarySample<Dim>& BoundarySampler<Dim>::sample(int element) {
     sample_.value.col(i) = field_at(*space_, solution_->potential, element, place, basis_);
     sample_.flux.col(i) = field_at(*space_, solution_->flux, element, place, basis_);
   }
-  sample_.true_value = sample_.value;
-  sample_.true_flux = sample_.flux;
-  apply_data(element);
   return sample_;
-}
-
-/// Puts the prescribed components in the place of what the coefficients say.
-template <int Dim>
-void BoundarySampler<Dim>::apply_data(int element) {
-  const int index = problem_->condition_of[static_cast<std::size_t>(element)];
-  const solver::Condition<Dim>& condition = problem_->conditions[static_cast<std::size_t>(index)];
-  data_.evaluate(index, sample_.nodes, values_);
-  const Eigen::Index components = sample_.value.rows();
-  for (int c = 0; c < components; ++c) {
-    const solver::ConditionKind kind = condition.components[static_cast<std::size_t>(c)].kind;
-    const Eigen::VectorXd axis = solver::component_axis(condition, c).head(components);
-    const std::vector<double>& given = values_.value[static_cast<std::size_t>(c)];
-    const std::vector<double>& coefficient = values_.coefficient[static_cast<std::size_t>(c)];
-    Eigen::MatrixXd& field = kind == solver::ConditionKind::value ? sample_.true_value : sample_.true_flux;
-    for (Eigen::Index i = 0; i < field.cols(); ++i) {
-      double target = given.empty() ? 0.0 : given[static_cast<std::size_t>(i)];
-      if (kind == solver::ConditionKind::robin) {
-        // The flux into the domain, while n points out of the body.
-        const double sign = problem_->exterior ? -1.0 : 1.0;
-        target = sign * coefficient[static_cast<std::size_t>(i)] * (target - axis.dot(sample_.value.col(i)));
-      }
-      const double correction = target - axis.dot(field.col(i));
-      field.col(i) += correction * axis;
-    }
-  }
 }
 
 template class BoundarySampler<2>;

@@ -5,9 +5,7 @@
 #include <Eigen/Core>
 
 #include "quadrature/target_rules.h"
-#include "solver/bem/boundary_data.h"
 #include "solver/bem/field_space.h"
-#include "solver/bem/problem.h"
 #include "solver/bem/solve.h"
 
 namespace isorim::io {
@@ -16,12 +14,9 @@ namespace isorim::io {
 template <int Dim>
 struct BoundarySample {
   quadrature::NodeView<Dim> nodes;
-  /// From the coefficients: what the space makes of the data, too.
+  /// From the coefficients: of prescribed data what the space makes of them.
   Eigen::MatrixXd value;
   Eigen::MatrixXd flux;
-  /// The data themselves where they are prescribed.
-  Eigen::MatrixXd true_value;
-  Eigen::MatrixXd true_flux;
 };
 
 /// Samples a solution on the boundary, element by element; an object serves one thread.
@@ -29,22 +24,17 @@ template <int Dim>
 class BoundarySampler {
  public:
   /// The arguments must outlive the object.
-  BoundarySampler(const solver::Problem<Dim>& problem, const solver::FieldSpace<Dim>& space,
-                  const solver::Solution<Dim>& solution, const quadrature::TargetRules<Dim>& rules);
+  BoundarySampler(const solver::FieldSpace<Dim>& space, const solver::Solution<Dim>& solution,
+                  const quadrature::TargetRules<Dim>& rules);
 
   /// At the nodes of the rule for targets about an element's size away: products of the fields are integrated far
   /// better than the fields are known.
   const BoundarySample<Dim>& sample(int element);
 
  private:
-  void apply_data(int element);
-
-  const solver::Problem<Dim>* problem_;
   const solver::FieldSpace<Dim>* space_;
   const solver::Solution<Dim>* solution_;
   const quadrature::TargetRules<Dim>* rules_;
-  solver::BoundaryData<Dim> data_;
-  solver::ConditionValues<Dim> values_;
   BoundarySample<Dim> sample_;
   std::vector<double> basis_;
 };

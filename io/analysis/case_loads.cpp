@@ -48,7 +48,7 @@ std::shared_ptr<const solver::DomainLoad<Dim>> rotation_load(const solver::Elast
   for (std::size_t i = 0; i < keys.point.values.size(); ++i) {
     rotation.point[static_cast<Eigen::Index>(i)] = keys.point.values[i];
   }
-  rotation.direction = keys.direction;
+  rotation.direction = keys.direction.value_or(Eigen::Vector3d::UnitZ());
   rotation.angular_speed = keys.speed;
   rotation.density = density;
   return solver::centrifugal_load(kernel, rotation);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -37,6 +38,13 @@ bool ConditionSelector<Dim>::holds(const Candidate& candidate, int patch, const 
   if (!candidate.selection) return true;
   std::array<double, 1> value{};
   candidate.selection(point, normal, value);
+  if (std::isnan(value[0])) {
+    const ExpressionText& text =
+        *file_->keys.boundary_condition[static_cast<std::size_t>(candidate.condition)].selection;
+    throw InputError(fmt::format("{}: {}: {} is no number at ({}); expected 0 where the condition does not hold",
+                                 text.where.place.describe(), text.where.path, text.text,
+                                 fmt::join(point.begin(), point.end(), ", ")));
+  }
   return value[0] != 0.0;
 }
 

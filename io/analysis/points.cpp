@@ -70,9 +70,10 @@ Eigen::MatrixXd probe_points(const ProbeKeys& keys, int dim, const std::filesyst
   }
   const Eigen::VectorXd from = vector_of(*keys.from);
   const Eigen::VectorXd to = vector_of(*keys.to);
-  Eigen::MatrixXd points(dim, keys.count);
-  for (int i = 0; i < keys.count; ++i) {
-    const double share = static_cast<double>(i) / (keys.count - 1);
+  const int count = keys.line_count();
+  Eigen::MatrixXd points(dim, count);
+  for (int i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / (count - 1);
     points.col(i) = (1.0 - share) * from + share * to;
   }
   return points;

@@ -9,7 +9,9 @@
 #include <span>
 
 #include <Eigen/Core>
+#include <fmt/format.h>
 
+#include "geometry/errors.h"
 #include "io/analysis/boundary_field.h"
 #include "io/case/analysis_checks.h"
 #include "solver/bem/rigid_motion.h"
@@ -25,6 +27,7 @@ class ExactField {
     for (const std::optional<ExpressionText>& text : texts) {
       rows_.push_back(text ? compile_integrand<Dim>(text->text, scope, file.definitions)()
                            : quadrature::Integrand<Dim>());
+      texts_.push_back(text.value_or(ExpressionText{}));
     }
   }
 
@@ -35,13 +38,24 @@ class ExactField {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       if (!rows_[i]) continue;
       rows_[i](points, normals, row);
+      require_finite(i, row, points);
       values.row(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), points.cols());
     }
     return values;
   }
 
  private:
+  void require_finite(std::size_t i, const std::vector<double>& values, const geometry::Points<Dim>& points) const {
+    const auto bad = std::ranges::find_if_not(values, [](double x) { return std::isfinite(x); });
+    if (bad == values.end()) return;
+    const geometry::Point<Dim> place = points.col(bad - values.begin());
+    throw InputError(fmt::format("{}: {}: {} is {} at ({}); expected a finite number", texts_[i].where.place.describe(),
+                                 texts_[i].where.path, texts_[i].text, *bad,
+                                 fmt::join(place.begin(), place.end(), ", ")));
+  }
+
   std::vector<quadrature::Integrand<Dim>> rows_;
+  std::vector<ExpressionText> texts_;
 };
 
 template <int Dim>
@@ -163,7 +177,7 @@ class ErrorMeter {
       : file_(file),
         setting_(setting),
         rules_(sampling_rules(setting.space)),
-        sampler_(setting.problem, setting.space, solution, rules_),
+        sampler_(setting.space, solution, rules_),
         value_(exact_value<Dim>(file)),
         flux_(exact_flux<Dim>(file)) {
     if (value_) fit_free_part();
@@ -296,6 +310,20 @@ class ErrorMeter {
 }  // namespace
 
 template <int Dim>
+void check_exact(const CaseFile& file, const solver::FieldSpace<Dim>& space) {
+  if (!file.keys.exact) return;
+  geometry::Points<Dim> points(Dim, space.function_count());
+  geometry::Points<Dim> normals(Dim, space.function_count());
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    points.col(i) = space.points[static_cast<std::size_t>(i)].position;
+    normals.col(i) = space.points[static_cast<std::size_t>(i)].normal;
+  }
+  for (const Exact<Dim>& field : {exact_value<Dim>(file), exact_flux<Dim>(file)}) {
+    if (field) field(points, normals);
+  }
+}
+
+template <int Dim>
 std::vector<std::pair<std::string, double>> solution_errors(const CaseFile& file,
                                                             const BoundaryValueProblem<Dim>& setting,
                                                             const solver::Solution<Dim>& solution,
@@ -309,6 +337,8 @@ std::vector<std::pair<std::string, double>> solution_errors(const CaseFile& file
   return errors;
 }
 
+template void check_exact(const CaseFile&, const solver::FieldSpace<2>&);
+template void check_exact(const CaseFile&, const solver::FieldSpace<3>&);
 template std::vector<std::pair<std::string, double>> solution_errors(const CaseFile&, const BoundaryValueProblem<2>&,
                                                                      const solver::Solution<2>&, const AnalysisReport&);
 template std::vector<std::pair<std::string, double>> solution_errors(const CaseFile&, const BoundaryValueProblem<3>&,

@@ -10,6 +10,10 @@
 
 namespace isorim::io {
 
+/// Before a solution is sought: throws InputError, naming key and place, where the exact fields are not finite.
+template <int Dim>
+void check_exact(const CaseFile& file, const solver::FieldSpace<Dim>& space);
+
 /// Errors against [exact], each divided by the largest magnitude of the exact field (for L2 errors its norm) where
 /// that is not zero:
 ///
@@ -19,7 +23,7 @@ namespace isorim::io {
 ///   grid_max                                     potential or displacement at those of all grids
 ///
 /// Maxima are over many points of each element. What the conditions leave free (the constant, rigid motions) is fitted
-/// to the exact solution on the boundary and taken off first.
+/// to the exact solution on the boundary and taken off first. Throws InputError as check_exact() does.
 template <int Dim>
 std::vector<std::pair<std::string, double>> solution_errors(const CaseFile& file,
                                                             const BoundaryValueProblem<Dim>& setting,

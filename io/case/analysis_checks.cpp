@@ -45,6 +45,7 @@ class AnalysisChecker {
 
   /// Sections that mean nothing without [analysis].
   void check_absence() {
+    if (complaints_.concern("analysis")) return;
     const auto refuse = [&](const KeyPlace& where) {
       complain(where, "found no section [analysis]; expected it, with an \"equation\"");
     };
@@ -64,14 +65,15 @@ class AnalysisChecker {
     if (analysis.state && (!is_elastic(keys_) || dim_ == 3)) {
       complain(analysis.where, "found a \"state\", which only elasticity in the plane has");
     }
-    if (analysis.equation == EquationKind::poisson && !keys_.source.term) {
+    if (analysis.equation == EquationKind::poisson && !keys_.source.term && !complaints_.concern("source")) {
       complain(analysis.where, "Poisson's equation has no source; expected a section [source] with a \"value\"");
     }
     if (keys_.convergence) complain(keys_.convergence->where, "a study of Gauss rules knows no analysis");
   }
 
   void check_material() {
-    if (is_elastic(keys_) && (!keys_.material || !keys_.material->young || !keys_.material->poisson)) {
+    if (is_elastic(keys_) && (!keys_.material || !keys_.material->young || !keys_.material->poisson) &&
+        !complaints_.concern("material")) {
       complain(keys_.material ? keys_.material->where : keys_.analysis->where,
                "elasticity needs \"young\" and \"poisson\" in [material]");
     }
@@ -110,14 +112,20 @@ class AnalysisChecker {
 
   void check_body_force(const BodyForceKeys& force) {
     const bool has_density = (keys_.material && keys_.material->density) || keys_.properties.density;
-    if ((force.gravity || force.centrifugal) && !has_density) {
+    if ((force.gravity || force.centrifugal) && !has_density && !complaints_.concern("material")) {
       complain(force.where, "gravity and centrifugal loads need a \"density\" in [material]");
     }
-    if (force.temperature && !(keys_.material && keys_.material->expansion)) {
+    if (keys_.material && keys_.material->density && keys_.properties.density &&
+        *keys_.material->density != *keys_.properties.density) {
+      complain(force.where,
+               fmt::format("found two densities, {:g} in [material] and {:g} in [properties]; expected one",
+                           *keys_.material->density, *keys_.properties.density));
+    }
+    if (force.temperature && !(keys_.material && keys_.material->expansion) && !complaints_.concern("material")) {
       complain(force.where, "a temperature needs \"expansion\" in [material]");
     }
     if (force.gravity) check_coordinates(*force.gravity);
-    if (force.centrifugal && !force.centrifugal->point.values.empty()) check_coordinates(force.centrifugal->point);
+    if (force.centrifugal) check_rotation(*force.centrifugal);
     if (force.temperature) check_expression(*force.temperature, ExpressionScope::domain);
     if (force.force) {
       check_vector(*force.force, ExpressionScope::domain);
@@ -125,6 +133,13 @@ class AnalysisChecker {
     }
     if (!force.gravity && !force.centrifugal && !force.force && !force.temperature) {
       complain(force.where, "expected at least one of gravity, centrifugal, force and temperature");
+    }
+  }
+
+  void check_rotation(const CentrifugalKeys& keys) {
+    if (!keys.point.values.empty()) check_coordinates(keys.point);
+    if (dim_ == 2 && keys.direction && keys.direction->head<2>().norm() > 0.0) {
+      complain(keys.where, "found a \"direction\" off z; in the plane the axis is along z");
     }
   }
 
@@ -175,6 +190,7 @@ class AnalysisChecker {
   }
 
   void check_on(const OneOrMany<std::string>& on, const KeyPlace& where, bool all_is_known) {
+    if (on.is_empty_list) complain(where, "\"on\" is an empty list; expected names of patches");
     std::set<std::string> seen;
     for (const std::string& name : on.items) {
       if (all_is_known && name == "all" && on.items.size() == 1) continue;
@@ -195,7 +211,7 @@ class AnalysisChecker {
   }
 
   void check_conditions() {
-    if (keys_.boundary_condition.empty()) {
+    if (keys_.boundary_condition.empty() && !complaints_.concern("boundary_condition")) {
       complain(keys_.analysis->where, "found no boundary condition; expected [[boundary_condition]]");
     }
     for (const BoundaryConditionKeys& condition : keys_.boundary_condition) check_condition(condition);
@@ -213,7 +229,31 @@ class AnalysisChecker {
       check_value(condition.coefficient, "coefficient");
     }
     if (condition.traction) check_value(condition.traction, "traction");
+    check_components(condition);
     if (condition.pressure) check_expression(*condition.pressure, ExpressionScope::boundary);
+  }
+
+  /// Of displacement and foundation: some are given, and what goes with the others is not given for these.
+  void check_components(const BoundaryConditionKeys& condition) {
+    const bool rests = condition.kind == BoundaryKind::foundation;
+    if (!rests && condition.kind != BoundaryKind::displacement) return;
+    const std::optional<ComponentTexts>& given = rests ? condition.coefficient : condition.value;
+    if (given && given->listed > 0 && !given->has_axes()) {
+      complain(given->where, "found no component; expected at least one");
+    }
+    // A frame along the normal has other components than x, y and z.
+    if (given && given->normal) return;
+    for (std::size_t i = 0; i < std::size_t(dim_); ++i) {
+      const bool holds = !given || given->single || given->axes[i];
+      if (holds && condition.traction && condition.traction->axes[i]) {
+        complain(condition.traction->where, fmt::format("found a traction along {}, where the {} is given",
+                                                        axis_names[i], rests ? "foundation" : "displacement"));
+      }
+      if (rests && !holds && condition.reference && condition.reference->axes[i]) {
+        complain(condition.reference->where,
+                 fmt::format("found a reference along {}, which has no coefficient", axis_names[i]));
+      }
+    }
   }
 
   void check_kind(const BoundaryConditionKeys& condition) {
@@ -241,7 +281,13 @@ class AnalysisChecker {
 
   void check_discretisation() {
     if (!keys_.discretisation) return;
-    for (const PatchDiscretisationKeys& patch : keys_.discretisation->patch) check_on(patch.on, patch.where, false);
+    std::set<std::string> seen;
+    for (const PatchDiscretisationKeys& patch : keys_.discretisation->patch) {
+      check_on(patch.on, patch.where, false);
+      for (const std::string& name : patch.on.items) {
+        if (!seen.insert(name).second) complain(patch.where, fmt::format("the patch \"{}\" has choices above", name));
+      }
+    }
     const AdaptKeys* adapt = adapt_keys(keys_);
     const double solved = keys_.solve.value_or(SolveKeys{}).tolerance;
     if (adapt && adapt->tolerance < solved) {
@@ -272,6 +318,12 @@ class AnalysisChecker {
     if (grid.counts.size() != counts) {
       complain(grid.where, fmt::format("found {} counts; expected {}", grid.counts.size(), counts));
       return;
+    }
+    constexpr double most_points = 1e7;
+    double points = 1.0;
+    for (const int count : grid.counts) points *= count;
+    if (points > most_points) {
+      complain(grid.where, fmt::format("found {:g} points; expected no more than {:g}", points, most_points));
     }
     if (grid.from && grid.to && grid.from->values.size() == counts && grid.to->values.size() == counts) {
       for (std::size_t i = 0; i < counts; ++i) {
@@ -334,9 +386,16 @@ class AnalysisChecker {
       const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
       });
-      if (!plain) complain(where, fmt::format("found the name \"{}\"; expected letters, digits, _ and -", name));
+      if (!plain && !(name.empty() && complaints_.concern(where.path)))
+        complain(where, fmt::format("found the name \"{}\"; expected letters, digits, _ and -", name));
       if (!taken.insert(name).second) complain(where, fmt::format("the name \"{}\" is taken", name));
     };
+    for (const IntegralKeys& integral : keys_.integral) {
+      for (const AnalysisQuantity& quantity : analysis_quantities(keys_, dim_)) {
+        if (integral.name == quantity.name)
+          complain(integral.where, fmt::format("the name \"{}\" is that of a result of the analysis", integral.name));
+      }
+    }
     for (const ProbeKeys& probe : keys_.probe) check(probe.name, probe.where);
     for (const GridKeys& grid : keys_.grid) check(grid.name, grid.where);
     for (const BoundaryConditionKeys& condition : keys_.boundary_condition) {
@@ -463,6 +522,7 @@ void check_definitions(CaseFile& file, int dim, Complaints& complaints) {
     const bool twice = std::any_of(file.definitions.begin(), file.definitions.end(),
                                    [&, &known = name](const Definition& other) { return other.name == known; });
     if (twice) continue;
+    if (expression.text.empty()) continue;
     file.definitions.push_back({name, expression.text});
     try {
       check_last_definition(file.definitions, dim);

@@ -5,6 +5,7 @@
 
 #include "io/case/analysis_keys.h"
 #include "io/case/case_file.h"
+#include "solver/bem/field_space.h"
 
 /// The declarations of the sections that make a case an analysis.
 namespace isorim::io {
@@ -163,10 +164,7 @@ template <>
 const Schema<AnalysisKeys>& schema<AnalysisKeys>() {
   static const auto declared =
       Schema<AnalysisKeys>("analysis", "Makes the case a boundary-element analysis.")
-          .choice("equation", &AnalysisKeys::equation,
-                  {{"laplace", EquationKind::laplace},
-                   {"poisson", EquationKind::poisson},
-                   {"elasticity", EquationKind::elasticity}},
+          .choice("equation", &AnalysisKeys::equation, equation_names,
                   {.text = "-div(k grad u) = 0, the same with a [source], or linear elasticity.", .presence = required})
           .choice("state", &AnalysisKeys::state,
                   {{"plane_strain", PlaneState::strain}, {"plane_stress", PlaneState::stress}},
@@ -210,14 +208,7 @@ const Schema<BoundaryConditionKeys>& schema<BoundaryConditionKeys>() {
           .key("where", &Keys::selection,
                {.text = "Of these, the elements in whose middle this expression in x, y, z, nx, ny, nz is not 0; for "
                         "example \"z > 0.99\"."})
-          .choice("kind", &Keys::kind,
-                  {{"value", BoundaryKind::value},
-                   {"flux", BoundaryKind::flux},
-                   {"robin", BoundaryKind::robin},
-                   {"displacement", BoundaryKind::displacement},
-                   {"traction", BoundaryKind::traction},
-                   {"foundation", BoundaryKind::foundation},
-                   {"symmetry", BoundaryKind::symmetry}},
+          .choice("kind", &Keys::kind, boundary_kind_names,
                   {.text = "value, flux, robin or symmetry for a potential; displacement, traction, foundation or "
                            "symmetry for elasticity. Symmetry: no flux, or no displacement along the normal of a "
                            "plane and no traction in it.",
@@ -266,11 +257,13 @@ const Schema<CentrifugalKeys>& schema<CentrifugalKeys>() {
       Schema<CentrifugalKeys>("centrifugal", "The load of a steady rotation.")
           .key("point", &CentrifugalKeys::point, {.text = "A point of the axis; the origin if absent."})
           .key("direction", &CentrifugalKeys::direction,
-               {.text = "In space: the direction of the axis, of any length; in the plane the axis is along z."})
+               {.text =
+                    "In space: the direction of the axis, of any length; along z if absent, as always in the plane."})
           .key("speed", &CentrifugalKeys::speed,
                {.text = "Angular velocity.", .unit = "radians per time", .presence = required})
           .check([](const CentrifugalKeys& keys, const KeyPlace& where, Complaints& complaints) {
-            if (keys.direction.norm() == 0.0) complaints.add(where, "the key \"direction\" is [0, 0, 0]");
+            if (keys.direction && keys.direction->norm() == 0.0)
+              complaints.add(where, "the key \"direction\" is [0, 0, 0]");
           });
   return declared;
 }
@@ -294,8 +287,8 @@ const Schema<BodyForceKeys>& schema<BodyForceKeys>() {
 
 namespace {
 
-constexpr int most_field_degree = 10;
-constexpr int most_bisections = 12;
+constexpr int most_field_degree = solver::DiscretisationOptions<3>::max_degree;
+constexpr int most_bisections = solver::DiscretisationOptions<3>::max_refine;
 
 }  // namespace
 
@@ -308,7 +301,10 @@ const Schema<PatchDiscretisationKeys>& schema<PatchDiscretisationKeys>() {
           .key("degree", &Keys::degree,
                {.text = "Instead of that of [discretisation].", .range = Range::between(1, most_field_degree)})
           .key("refine", &Keys::refine,
-               {.text = "Instead of that of [discretisation].", .range = Range::between(0, most_bisections)});
+               {.text = "Instead of that of [discretisation].", .range = Range::between(0, most_bisections)})
+          .check([](const Keys& patch, const KeyPlace& where, Complaints& complaints) {
+            if (!patch.degree && !patch.refine) complaints.add(where, "expected \"degree\", \"refine\" or both");
+          });
   return declared;
 }
 
@@ -389,7 +385,7 @@ const Schema<ProbeKeys>& schema<ProbeKeys>() {
           .key("from", &ProbeKeys::from, {.text = "First point of a straight line."})
           .key("to", &ProbeKeys::to, {.text = "Last point of a straight line."})
           .key("count", &ProbeKeys::count,
-               {.text = "Points on the line, evenly spaced.", .range = Range::between(2, 1000000)})
+               {.text = "Points on the line, evenly spaced; 101 if absent.", .range = Range::between(2, 1000000)})
           .key("file", &ProbeKeys::file,
                {.text = "A file with a point a line, coordinates separated by commas or blanks; # begins a comment. "
                         "Relative to the case."})
@@ -397,6 +393,10 @@ const Schema<ProbeKeys>& schema<ProbeKeys>() {
             const bool line = probe.from && probe.to;
             if (probe.from.has_value() != probe.to.has_value()) {
               complaints.add(where, "a line needs both \"from\" and \"to\"");
+            } else if (line && probe.from->values == probe.to->values) {
+              complaints.add(where, "\"from\" and \"to\" are the same point");
+            } else if (probe.count && !line) {
+              complaints.add(where, "found \"count\", which goes with \"from\" and \"to\"");
             } else if (int{!probe.points.empty()} + int{line} + int{!probe.file.empty()} != 1) {
               complaints.add(where, "expected exactly one of \"points\", \"from\" with \"to\", and \"file\"");
             }
@@ -440,7 +440,11 @@ const Schema<ExactKeys>& schema<ExactKeys>() {
           .key("displacement", &ExactKeys::displacement, {.text = "One expression in x, y, z a component."})
           .key("stress", &ExactKeys::stress, {.text = "{ xx, yy, zz, xy, yz, xz } in x, y, z."})
           .key("traction", &ExactKeys::traction,
-               {.text = "On the boundary, in x, y, z, nx, ny, nz, one a component; that of the stress if absent."});
+               {.text = "On the boundary, in x, y, z, nx, ny, nz, one a component; that of the stress if absent."})
+          .check([](const ExactKeys& keys, const KeyPlace& where, Complaints& complaints) {
+            if (!keys.value && !keys.gradient && !keys.flux && !keys.displacement && !keys.stress && !keys.traction)
+              complaints.add(where, "the section is empty; expected at least one of its keys");
+          });
   return declared;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -60,6 +61,10 @@ struct KeyType<DefinitionsKeys> {
   static std::string print(const DefinitionsKeys&) { return ""; }
 };
 
+/// Texts out of few, and what each stands for.
+template <class E>
+using Choices = std::vector<std::pair<std::string, E>>;
+
 enum class EquationKind { laplace, poisson, elasticity };
 enum class PlaneState { strain, stress };
 
@@ -80,6 +85,19 @@ struct MaterialKeys {
 };
 
 enum class BoundaryKind { value, flux, robin, displacement, traction, foundation, symmetry };
+
+/// What files and results call them.
+inline const Choices<EquationKind> equation_names{
+    {"laplace", EquationKind::laplace}, {"poisson", EquationKind::poisson}, {"elasticity", EquationKind::elasticity}};
+inline const Choices<BoundaryKind> boundary_kind_names{
+    {"value", BoundaryKind::value},       {"flux", BoundaryKind::flux},
+    {"robin", BoundaryKind::robin},       {"displacement", BoundaryKind::displacement},
+    {"traction", BoundaryKind::traction}, {"foundation", BoundaryKind::foundation},
+    {"symmetry", BoundaryKind::symmetry}};
+template <class E>
+const std::string& name_of(E value, const Choices<E>& names) {
+  return std::ranges::find(names, value, &Choices<E>::value_type::second)->first;
+}
 
 struct BoundaryConditionKeys {
   std::string name;
@@ -117,7 +135,8 @@ struct KeyType<SourceEntry> {
 
 struct CentrifugalKeys {
   Coordinates point;
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
+  /// The z axis if absent.
+  std::optional<Eigen::Vector3d> direction;
   double speed = 0.0;
   KeyPlace where;
 };
@@ -182,8 +201,10 @@ struct ProbeKeys {
   std::vector<Coordinates> points;
   std::optional<Coordinates> from;
   std::optional<Coordinates> to;
-  int count = 101;
+  std::optional<int> count;
   std::string file;
+
+  int line_count() const { return count.value_or(101); }
   KeyPlace where;
 };
 

@@ -21,11 +21,15 @@ KeyPlace KeyPlace::item(std::size_t index, const Place& value_place) const {
 void Complaints::add(const KeyPlace& where, std::string_view message) {
   std::string text = where.place.describe();
   if (!where.path.empty()) text += (text.empty() ? "" : ": ") + where.path;
-  entries_.push_back({where.place.line, fmt::format("{}: {}", text, message)});
+  entries_.push_back({where.place.line, where.path, fmt::format("{}: {}", text, message)});
 }
 
 void Complaints::add(std::string message) {
-  entries_.push_back({0, std::move(message)});
+  entries_.push_back({0, "", std::move(message)});
+}
+
+bool Complaints::concern(std::string_view path) const {
+  return std::ranges::any_of(entries_, [&](const Entry& entry) { return entry.path.starts_with(path); });
 }
 
 void Complaints::throw_if_any() const {

@@ -31,12 +31,15 @@ class Complaints {
   void add(std::string message);
   bool empty() const { return entries_.empty(); }
   std::size_t count() const { return entries_.size(); }
+  /// Whether something was said of a key whose path begins like this: what follows from it needs no saying.
+  bool concern(std::string_view path) const;
   /// Throws InputError with every complaint, one a line, in the order of the file.
   void throw_if_any() const;
 
  private:
   struct Entry {
     int line = 0;
+    std::string path;
     std::string text;
   };
   std::vector<Entry> entries_;

@@ -279,6 +279,8 @@ struct KeyType<std::vector<M>> {
 template <class M>
 struct OneOrMany {
   std::vector<M> items;
+  /// Found "[]", not nothing.
+  bool is_empty_list = false;
 };
 
 template <class M>
@@ -286,9 +288,14 @@ struct KeyType<OneOrMany<M>> {
   static std::string type() { return KeyType<M>::type() + " or list of " + KeyType<M>::type() + "s"; }
   static std::vector<const Description*> nested() { return KeyType<M>::nested(); }
   static bool read(const Value& v, OneOrMany<M>& t, const Range& r, const KeyPlace& w, Complaints& c) {
-    if (v.as<Value::Array>()) return KeyType<std::vector<M>>::read(v, t.items, r, w, c);
-    t.items.emplace_back();
-    return KeyType<M>::read(v, t.items.back(), r, w, c);
+    if (const auto* list = v.as<Value::Array>()) {
+      t.is_empty_list = list->empty();
+      return KeyType<std::vector<M>>::read(v, t.items, r, w, c);
+    }
+    M item{};
+    if (!KeyType<M>::read(v, item, r, w, c)) return false;
+    t.items.push_back(std::move(item));
+    return true;
   }
   static std::string print(const OneOrMany<M>&) { return ""; }
 };

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "geometry/topology/shape_loops.h"
 #include "geometry/trimming/lifted_curve.h"
@@ -69,12 +72,15 @@ void write_tmesh_svgs(const std::filesystem::path& folder, const AnyBoundary& sh
   const auto* solid = std::get_if<BuiltBoundary<3>>(&shape);
   if (!solid || solid->meshes.empty()) return;
   auto mesh = solid->meshes.begin();
+  std::set<std::string> taken;
   for (const auto& patch : solid->boundary.patches) {
     if (!std::holds_alternative<geometry::ExtractedSurface>(patch.shape)) continue;
     std::string name = patch.name;
     std::ranges::replace_if(
         name, [](unsigned char c) { return c < 128 && std::isalnum(c) == 0 && c != '-'; }, '_');
-    svg::write_svg(folder / ("tmesh_" + name + ".svg"), *mesh++, "T-mesh of " + patch.name);
+    std::string unique = name;
+    for (int k = 2; !taken.insert(unique).second; ++k) unique = fmt::format("{}_{}", name, k);
+    svg::write_svg(folder / ("tmesh_" + unique + ".svg"), *mesh++, "T-mesh of " + patch.name);
   }
 }
 

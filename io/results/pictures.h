@@ -16,7 +16,7 @@ void write_boundary_vtu(const std::filesystem::path& path, const AnyModel& model
 void write_boundary_svg(const std::filesystem::path& path, const std::string& title, const AnyModel& model);
 
 /// "tmesh_<patch>.svg" in the folder for each T-spline of the case; what is neither letter, digit nor "-" in the
-/// patch's name becomes "_".
+/// patch's name becomes "_". Where two names lead to the same file the later one gets a number, "tmesh_<patch>_2.svg".
 void write_tmesh_svgs(const std::filesystem::path& folder, const AnyBoundary& shape);
 
 /// Whether a solid's boundary has edges that nothing continues.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -38,8 +39,7 @@ class BeReader {
     read_collocation_points();
     data_.entities = {{"node", "control point", static_cast<int>(data_.points.cols()), 0},
                       {"element", "Bézier element", static_cast<int>(data_.elements.size()), 0}};
-    if (collocation_points_ > 0)
-      data_.entities.push_back({"collocation", "collocation point", collocation_points_, collocation_points_});
+    report_what_is_not_used();
     return std::move(data_);
   }
 
@@ -93,11 +93,25 @@ class BeReader {
     ExtractionElement element;
     element.degree.fill(static_cast<std::int8_t>(degree));
     for (std::size_t k = 0; k < count; ++k) element.functions.push_back(node("a node of an element"));
-    for (std::size_t k = 0; k < count; ++k) words_.integer("the region of a node", -highest_number, highest_number);
+    for (std::size_t k = 0; k < count; ++k)
+      regions_.insert(words_.integer("the region of a node", -highest_number, highest_number));
     element.rows.resize(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(coefficients));
     for (Eigen::Index k = 0; k < element.rows.rows(); ++k)
       for (Eigen::Index j = 0; j < element.rows.cols(); ++j) element.rows(k, j) = words_.real("a coefficient");
     data_.elements.push_back(std::move(element));
+  }
+
+  /// Regions tell programs with several bodies which one a node belongs to; points to collocate at are our own.
+  void report_what_is_not_used() {
+    if (regions_.size() > 1)
+      data_.warnings.push_back(
+          fmt::format("the regions of nodes are not used; found {} different ones", regions_.size()));
+    if (collocation_points_ == 0) return;
+    data_.entities.push_back({"collocation", "collocation point", collocation_points_, collocation_points_});
+    data_.warnings.push_back(fmt::format("{} not used: analyses place their own",
+                                         collocation_points_ == 1
+                                             ? "a collocation point is"
+                                             : fmt::format("{} collocation points are", collocation_points_)));
   }
 
   /// For each of some nodes: its number, how many places follow, and each of these: element, u and v in [-1, 1].
@@ -126,6 +140,7 @@ class BeReader {
   ExtractionData data_;
   Numbers nodes_;
   Numbers elements_;
+  std::set<long> regions_;
   int collocation_points_ = 0;
 };
 

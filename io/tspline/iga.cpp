@@ -45,7 +45,7 @@ class IgaReader {
     read_additions();
     data_.entities = {{"node", "control point", static_cast<int>(data_.points.cols()), 0},
                       {"belem", "Bézier element", static_cast<int>(data_.elements.size()), 0}};
-    if (sets_ > 0) data_.entities.push_back({"set", "set of nodes, elements or sides", sets_, sets_});
+    report_sets();
     return std::move(data_);
   }
 
@@ -127,7 +127,7 @@ class IgaReader {
     const std::string_view kind = words_.word("the kind of a set");
     if (kind != "node" && kind != "elem" && kind != "side")
       words_.refuse(line, fmt::format("found a set of \"{}\"; expected node, elem or side", kind.substr(0, 40)));
-    words_.word("the name of a set");
+    sets_.push_back(fmt::format("{} ({} {})", words_.word("the name of a set").substr(0, 40), count, kind));
     for (std::size_t i = 0; i < count; ++i) {
       const long item = words_.integer("an item of a set", 0, most_items);
       long& highest = kind == "node" ? highest_set_node_ : highest_set_element_;
@@ -137,7 +137,18 @@ class IgaReader {
       }
       if (kind == "side") read_side();
     }
-    ++sets_;
+  }
+
+  /// Boundary conditions speak of patches and places, so nothing asks for them.
+  void report_sets() {
+    if (sets_.empty()) return;
+    const int count = static_cast<int>(sets_.size());
+    data_.entities.push_back({"set", "set of nodes, elements or sides", count, count});
+    constexpr std::size_t most = 10;
+    const auto last = sets_.begin() + static_cast<std::ptrdiff_t>(std::min(most, sets_.size()));
+    data_.warnings.push_back(fmt::format("{} not used: {}{}", count == 1 ? "a set is" : "sets are",
+                                         fmt::join(sets_.begin(), last, ", "),
+                                         sets_.size() > most ? fmt::format(", ... ({} in all)", count) : ""));
   }
 
   void read_side() {
@@ -232,7 +243,8 @@ class IgaReader {
   bool has_type_ = false;
   std::optional<long> node_count_;
   std::optional<long> element_count_;
-  int sets_ = 0;
+  /// Names, and how many of what they hold.
+  std::vector<std::string> sets_;
   long highest_set_node_ = -1;
   long highest_set_element_ = -1;
   int set_node_line_ = 0;

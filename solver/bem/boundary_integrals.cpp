@@ -248,6 +248,24 @@ ResultIntegrals<Dim> result_integrals(const Problem<Dim>& problem, const FieldSp
 }
 
 template <int Dim>
+double integrate_fields(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const Solution<Dim>& solution,
+                        const std::function<FieldFunction<Dim>()>& make, const EvaluationOptions& options) {
+  std::vector<FieldFunction<Dim>> functions(static_cast<std::size_t>(quadrature::thread_count(options.threads)));
+  std::vector<double> parts(space.elements.size(), 0.0);
+  ElementSweep<Dim>(problem, space, solution, options)
+      .run([&](std::size_t e, const NodeView<Dim>& nodes, const Densities& densities, int thread) {
+        FieldFunction<Dim>& function = functions[static_cast<std::size_t>(thread)];
+        if (!function) function = make();
+        std::vector<double> values(nodes.size());
+        function(nodes, densities, values);
+        for (std::size_t q = 0; q < values.size(); ++q) parts[e] += nodes.weight[q] * values[q];
+      });
+  double sum = 0.0;
+  for (const double part : parts) sum += part;
+  return sum;
+}
+
+template <int Dim>
 BoundaryErrors<Dim> boundary_errors(const Problem<Dim>& problem, const FieldSpace<Dim>& space,
                                     const Solution<Dim>& solution, const ExactData<Dim>& exact,
                                     const EvaluationOptions& options) {
@@ -271,6 +289,10 @@ template ResultIntegrals<2> result_integrals(const Problem<2>&, const FieldSpace
                                              const geometry::Point<2>&, const EvaluationOptions&);
 template ResultIntegrals<3> result_integrals(const Problem<3>&, const FieldSpace<3>&, const Solution<3>&,
                                              const geometry::Point<3>&, const EvaluationOptions&);
+template double integrate_fields(const Problem<2>&, const FieldSpace<2>&, const Solution<2>&,
+                                 const std::function<FieldFunction<2>()>&, const EvaluationOptions&);
+template double integrate_fields(const Problem<3>&, const FieldSpace<3>&, const Solution<3>&,
+                                 const std::function<FieldFunction<3>()>&, const EvaluationOptions&);
 template BoundaryErrors<2> boundary_errors(const Problem<2>&, const FieldSpace<2>&, const Solution<2>&,
                                            const ExactData<2>&, const EvaluationOptions&);
 template BoundaryErrors<3> boundary_errors(const Problem<3>&, const FieldSpace<3>&, const Solution<3>&,

@@ -1,13 +1,17 @@
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "geometry/vocabulary.h"
 #include "quadrature/rim.h"
+#include "quadrature/target_rules.h"
 #include "solver/bem/evaluation.h"
+#include "solver/bem/field_densities.h"
 
 /// Integrals of a solution over the boundary, and its errors there.
 namespace isorim::solver {
@@ -65,6 +69,15 @@ ResultIntegrals<Dim> result_integrals(const Problem<Dim>& problem, const FieldSp
                                       const Solution<Dim>& solution,
                                       const geometry::Point<Dim>& point = geometry::Point<Dim>::Zero(),
                                       const EvaluationOptions& options = {});
+
+/// A function of place, normal and both fields at the nodes of an element (nodes x components), for use by one thread.
+template <int Dim>
+using FieldFunction =
+    std::function<void(const quadrature::NodeView<Dim>& nodes, const Densities& fields, std::span<double> values)>;
+/// Its integral over the boundary; `make` is called once for each thread. What a function throws comes through.
+template <int Dim>
+double integrate_fields(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const Solution<Dim>& solution,
+                        const std::function<FieldFunction<Dim>()>& make, const EvaluationOptions& options = {});
 
 /// Errors of a field, all components together.
 struct ErrorNorms {

@@ -1,6 +1,7 @@
 #include "solver/bem/field_space.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <type_traits>
@@ -401,10 +402,37 @@ void append(FieldSpace<Dim>& space, const PatchSpace<Dim>& patch) {
 
 }  // namespace
 
+namespace {
+
+double cell_count(const NurbsCurve<2>& curve) {
+  return static_cast<double>(curve.knots().breakpoints().size() - 1);
+}
+double cell_count(const geometry::SurfaceShape& shape) {
+  if (const auto* extracted = std::get_if<ExtractedSurface>(&shape))
+    return static_cast<double>(extracted->elements().size());
+  const NurbsSurface<3>& surface = geometry::surface_of(shape);
+  return static_cast<double>(surface.knots_u().breakpoints().size() - 1) *
+         static_cast<double>(surface.knots_v().breakpoints().size() - 1);
+}
+
+/// Before memory is taken for them.
+template <int Dim>
+void require_few_elements(const Boundary<Dim>& boundary, const std::vector<PatchRequest>& requests) {
+  double count = 0.0;
+  for (std::size_t i = 0; i < requests.size(); ++i)
+    count += std::ldexp(cell_count(boundary.patches[i].shape), (Dim - 1) * requests[i].refine);
+  if (count > DiscretisationOptions<Dim>::max_elements)
+    throw InputError(fmt::format("discretisation: the bisections make {:.0f} elements; expected no more than {}", count,
+                                 DiscretisationOptions<Dim>::max_elements));
+}
+
+}  // namespace
+
 template <int Dim>
 FieldSpace<Dim> field_space(const OrientedBoundary<Dim>& oriented, const DiscretisationOptions<Dim>& options) {
   const Boundary<Dim>& boundary = oriented.boundary;
   const std::vector<PatchRequest> requests = patch_requests(boundary, options);
+  require_few_elements(boundary, requests);
   Boundary<Dim> fine = boundary;
   for (std::size_t i = 0; i < requests.size(); ++i)
     fine.patches[i].shape = refined(boundary.patches[i].shape, requests[i].refine);

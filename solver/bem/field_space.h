@@ -101,6 +101,8 @@ struct DiscretisationOptions {
   int refine = 0;
   static constexpr int max_degree = 15;
   static constexpr int max_refine = 12;
+  /// Of level 0 in all.
+  static constexpr int max_elements = 1000000;
   struct PatchOptions {
     std::optional<int> degree;
     std::optional<int> refine;
@@ -134,7 +136,8 @@ struct DiscretisationOptions {
 /// topology). They are not refined themselves: with refinement, or another degree, every element is a patch by itself,
 /// functions jump across its edges.
 ///
-/// Throws InputError for a degree or refinement out of range or a patch that does not exist, NumericalError for
+/// Throws InputError for a degree or refinement out of range, more than max_elements or a patch that does not exist,
+/// NumericalError for
 /// functions of an extracted surface that depend on one another.
 template <int Dim>
 FieldSpace<Dim> field_space(const geometry::OrientedBoundary<Dim>& boundary, const DiscretisationOptions<Dim>& options);

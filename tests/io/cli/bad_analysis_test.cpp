@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@ namespace isorim::testing {
 namespace {
 
 class BadAnalysis : public BadCaseTest {};
+class SingleMistake : public ProgramTest {};
 
 TEST_P(BadAnalysis, IsRefusedWithStatus2AndNothingWritten) {
   expect_refusal();
@@ -64,9 +66,38 @@ const std::vector<BadCase> sections{
     {"GravityInTheWrongSpace",
      square + elastic + "density = 1\n" + condition("kind = 'displacement'") + "[body_force]\ngravity = [0, 0, 1]\n",
      {"body_force.gravity: found 3 coordinates; expected 2"}},
+    {"TwoDensities",
+     square + "[properties]\ndensity = 3\n" + elastic + "density = 2\n" + condition("kind = 'displacement'") +
+         "[body_force]\ngravity = [0, -1]\n",
+     {"body_force: found two densities, 2 in [material] and 3 in [properties]"}},
+    {"RotationOffThePlane",
+     square + elastic + "density = 1\n" + condition("kind = 'displacement'") +
+         "[body_force]\ncentrifugal = { speed = 1, direction = [1, 0, 0] }\n",
+     {"body_force.centrifugal: found a \"direction\" off z"}},
 };
 
 const std::vector<BadCase> conditions{
+    {"EmptyListOfPatches",
+     square + laplace + condition("on = []\nkind = 'value'"),
+     {"boundary_condition[1]: \"on\" is an empty list; expected names of patches"}},
+    {"SelectionThatIsNoNumber",
+     square + laplace + condition("kind = 'value'\nwhere = 'log(-1 - x^2)'") + condition("kind = 'flux'"),
+     {"case.toml:8: boundary_condition[1].where: log(-1 - x^2) is no number at (0.5, 0)"}},
+    {"DisplacementOfNothing",
+     square + elastic + condition("kind = 'displacement'\nvalue = ['', '']"),
+     {"boundary_condition[1].value: found no component; expected at least one"}},
+    {"TractionWhereTheDisplacementIsGiven",
+     square + elastic + condition("kind = 'displacement'\nvalue = ['0', '']\ntraction = ['1', '2']"),
+     {"boundary_condition[1].traction: found a traction along x, where the displacement is given"}},
+    {"ReferenceWithoutCoefficient",
+     square + elastic + condition("kind = 'foundation'\ncoefficient = [1, '']\nreference = ['', 'y']"),
+     {"boundary_condition[1].reference: found a reference along y, which has no coefficient"}},
+    {"NegativeCoefficient",
+     square + laplace + condition("kind = 'robin'\ncoefficient = 'x - 2'"),
+     {"boundary condition 'all': the coefficient is", "expected a positive number"}},
+    {"ValueThatIsInfinite",
+     square + laplace + condition("kind = 'value'\nvalue = '1/0'"),
+     {"boundary condition 'all': the value is inf at"}},
     {"UnknownPatch",
      square + laplace + condition("on = 'bottm'\nkind = 'value'"),
      {"boundary_condition[1]: found the patch \"bottm\" (did you mean \"bottom\"?)"}},
@@ -109,6 +140,19 @@ const std::vector<BadCase> conditions{
 };
 
 const std::vector<BadCase> discretisations{
+    {"MoreElementsThanMemory",
+     box + laplace + everywhere + "[discretisation]\nrefine = 12\n",
+     {"discretisation: the bisections make 100663296 elements; expected no more than 1000000"}},
+    {"ADenseMatrixLargerThanTheMachine",
+     box + laplace + everywhere + "[discretisation]\nrefine = 8\n[solve]\nmethod = 'dense'\n",
+     {"case.toml:11: solve: a dense matrix of", "expected method = \"compressed\" or fewer unknowns"}},
+    {"PatchWithoutChoice",
+     square + laplace + everywhere + "[[discretisation.patch]]\non = 'top'\n",
+     {"discretisation.patch[1]: expected \"degree\", \"refine\" or both"}},
+    {"PatchWithTwoChoices",
+     square + laplace + everywhere +
+         "[[discretisation.patch]]\non = 'top'\ndegree = 2\n[[discretisation.patch]]\non = 'top'\ndegree = 3\n",
+     {"discretisation.patch[2]: the patch \"top\" has choices above"}},
     {"AdaptOfANumber",
      circle + laplace + everywhere + "[discretisation]\nadapt = 1e-6\n",
      {"discretisation.adapt: found the real 1e-06; expected true, false or a table"}},
@@ -124,6 +168,22 @@ const std::vector<BadCase> discretisations{
 };
 
 const std::vector<BadCase> points{
+    {"LineOfOnePoint",
+     circle + laplace + everywhere + "[[probe]]\nname = 'a'\nfrom = [0, 0]\nto = [0, 0]\n",
+     {"probe[1]: \"from\" and \"to\" are the same point"}},
+    {"CountWithoutALine",
+     circle + laplace + everywhere + "[[probe]]\nname = 'a'\npoints = [[0, 0]]\ncount = 5\n",
+     {"probe[1]: found \"count\", which goes with \"from\" and \"to\""}},
+    {"GridLargerThanMemory",
+     circle + laplace + everywhere + "[[grid]]\nname = 'a'\nfrom = [0, 0]\nto = [1, 1]\ncounts = [100000, 1000]\n",
+     {"grid[1]: found 1e+08 points; expected no more than 1e+07"}},
+    {"GridInThePlaneWithACorner",
+     circle + laplace + everywhere +
+         "[[grid]]\nname = 'a'\ncorner = [0, 0]\nsides = [[1, 0], [0, 1]]\ncounts = [2, 2]\n",
+     {"grid[1]: expected a corner and two sides, in space"}},
+    {"MissingFileOfPoints",
+     circle + laplace + everywhere + "[[probe]]\nname = 'a'\nfile = 'nowhere.csv'\n",
+     {"nowhere.csv: cannot read the file of points"}},
     {"ProbeWithoutPoints",
      circle + laplace + everywhere + "[[probe]]\nname = 'a'\n",
      {"probe[1]: expected exactly one of \"points\", \"from\" with \"to\", and \"file\""}},
@@ -154,6 +214,13 @@ const std::vector<BadCase> points{
 };
 
 const std::vector<BadCase> expected{
+    {"EmptyExact", circle + laplace + everywhere + "[exact]\n", {"exact: the section is empty"}},
+    {"ExactThatIsNoNumber",
+     circle + laplace + everywhere + "[exact]\nvalue = 'log(x - 5)'\n",
+     {"case.toml:10: exact.value: log(x - 5) is", "expected a finite number"}},
+    {"IntegralNamedLikeAResult",
+     circle + laplace + everywhere + "[[integral]]\nname = 'balance'\nover = 'boundary'\nintegrand = 'u'\n",
+     {"integral[1]: the name \"balance\" is that of a result of the analysis"}},
     {"ErrorWithoutExact",
      circle + laplace + everywhere + "[expect]\nboundary_l2 = { value = 0, atol = 1 }\n",
      {"found the quantity \"boundary_l2\""}},
@@ -188,6 +255,22 @@ const std::vector<BadCase> definitions{
      "[definitions]\na = 'nx'\n" + circle,
      {"found \"nx\", the normal, which only a boundary has"}},
 };
+
+/// What follows from another complaint is not said.
+TEST_F(SingleMistake, OneMistakeIsOneLine) {
+  for (const std::string& text :
+       {square + "[analysis]\nequation = 'elasticity'\n[material]\nyoung = -1\npoisson = 0.3\n" +
+            condition("kind = 'displacement'"),
+        "analysis = 'laplace'\n" + square + everywhere, square + laplace + "[boundary_condition]\nkind = 'value'\n",
+        square + laplace + "[[boundary_conditions]]\nkind = 'value'\n",
+        square + laplace + everywhere + "[[probe]]\npoints = [[0.5, 0.5]]\n",
+        square + laplace + condition("on = 3\nkind = 'value'"),
+        "[definitions]\na = [1]\n" + square + laplace + everywhere}) {
+    const ProgramResult result = run_case(text);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  }
+}
 
 INSTANTIATE_TEST_SUITE_P(Sections, BadAnalysis, ::testing::ValuesIn(sections), bad_case_name);
 INSTANTIATE_TEST_SUITE_P(Conditions, BadAnalysis, ::testing::ValuesIn(conditions), bad_case_name);

@@ -35,6 +35,16 @@ TEST_F(TSplineCase, DrawsNothingOfWhatIsCutOrNotAsked) {
     EXPECT_NE(entry.path().extension(), ".svg") << entry.path();
 }
 
+TEST_F(TSplineCase, PatchesOfSimilarNamesHaveADrawingEach) {
+  const std::string plane = "{ type = 'tspline', from = { type = 'disc', radius = 1, centre = [0, 0, ";
+  const ProgramResult result = run_case("[geometry]\ntype = 'patches'\npatches = [" + plane + "0] }, name = 'a b' }, " +
+                                        plane + "1] }, name = 'a_b' }, " + plane + "2] }, name = 'a.b' }]\n");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(read_file(folder() / "out/tmesh_a_b.svg"), HasSubstr("T-mesh of a b"));
+  EXPECT_THAT(read_file(folder() / "out/tmesh_a_b_2.svg"), HasSubstr("T-mesh of a_b"));
+  EXPECT_THAT(read_file(folder() / "out/tmesh_a_b_3.svg"), HasSubstr("T-mesh of a.b"));
+}
+
 TEST_F(TSplineCase, NamesPatchesInListsByTheirPlace) {
   const ProgramResult result = run_case(
       "[geometry]\ntype = 'patches'\npatches = [{ type = 'disc', radius = 1 }, { type = 'tspline', from = { type = "

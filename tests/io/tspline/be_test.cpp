@@ -57,6 +57,14 @@ TEST(Be, ReadsFilesWithoutCollocationPoints) {
   EXPECT_EQ(parse_be(text.substr(0, text.rfind("10 1\n"))).elements.size(), 2u);
 }
 
+TEST(Be, TellsWhatIsNotUsed) {
+  EXPECT_THAT(parse_be(two_squares(true)).warnings,
+              ::testing::ElementsAre("the regions of nodes are not used; found 2 different ones",
+                                     "2 collocation points are not used: analyses place their own"));
+  const std::string plain = replaced(two_squares(false), "1 2 2 1\n", "1 1 1 1\n");
+  EXPECT_THAT(parse_be(plain.substr(0, plain.rfind("10 1\n"))).warnings, ::testing::IsEmpty());
+}
+
 TEST(Be, RefusalsNameTheLine) {
   for (const bool faces : {false, true}) {
     const std::string text = two_squares(faces);

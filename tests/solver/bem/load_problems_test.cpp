@@ -144,6 +144,34 @@ ExactField<Dim> quadratic_bubble(const Vector<Dim>& radii) {
           {}};
 }
 
+/// In L2, relative.
+template <int Dim>
+double bubble_flux_error(const geometry::Boundary<Dim>& boundary, const Vector<Dim>& radii, int degree, int refine) {
+  const FieldSpace<Dim> space = space_on<Dim>(boundary, degree, refine);
+  const Laplace<Dim> kernel{1.0, logarithm_length(space.table)};
+  const ExactField<Dim> field = quadratic_bubble<Dim>(radii);
+  const Problem<Dim> problem = dirichlet(kernel, space, field, {polynomial_load(kernel, {Quadratic<Dim>{1.0}})});
+  const auto errors =
+      boundary_errors<Dim>(problem, space, solve<Dim>(problem, space, solve_options()), exact_flux(kernel, field));
+  return errors.flux->l2 / errors.flux->exact_l2;
+}
+
+/// Of the normal derivative, which the space only approximates, since normals have roots in them: what bounds the test
+/// below is the order of the discretisation, not the source.
+TEST(Poisson, FluxOfAUnitSourceConvergesWithTheOrderOfTheFunctions) {
+  for (const int degree : {3, 5}) {
+    const Vector2 radii(2.0, 1.0);
+    const double coarse = bubble_flux_error<2>(geometry::elliptic_disc(radii), radii, degree, 3);
+    const double fine = bubble_flux_error<2>(geometry::elliptic_disc(radii), radii, degree, 4);
+    EXPECT_GT(std::log2(coarse / fine), degree + 0.7) << degree;
+  }
+  const Vector3 radii(1.0, 0.8, 0.6);
+  // On eight elements that meet at two poles, by degree.
+  EXPECT_LT(bubble_flux_error<3>(geometry::ellipsoid(radii), radii, 4, 1), 2e-4);
+  EXPECT_LT(bubble_flux_error<3>(geometry::ellipsoid(radii), radii, 6, 1), 6.5e-6);
+  EXPECT_LT(bubble_flux_error<3>(geometry::ellipsoid(radii), radii, 8, 1), 1.4e-6);
+}
+
 TEST(Poisson, UnitSourceInEllipseAndEllipsoid) {
   const FieldSpace<2> ellipse = space_on<2>(geometry::elliptic_disc({2.0, 1.0}), 5, 2);
   const Laplace<2> plane{1.0, logarithm_length(ellipse.table)};
