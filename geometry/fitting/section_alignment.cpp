@@ -214,25 +214,27 @@ std::vector<NurbsCurve<3>> align_sections(std::span<const NurbsCurve<3>> section
   return aligned;
 }
 
-void align_polygons(std::span<Points<3>> polygons, StartRule rule) {
+std::vector<PolygonAlignment> align_polygons(std::span<Points<3>> polygons, StartRule rule) {
+  std::vector<PolygonAlignment> done(polygons.size());
   for (std::size_t k = 1; k < polygons.size(); ++k) {
     const Points<3>& reference = polygons[k - 1];
     Points<3>& polygon = polygons[k];
     if (reference.cols() < 3 || polygon.cols() < 3) continue;
-    if (polygon_vector_area(polygon).dot(polygon_vector_area(reference)) < 0.0) {
-      polygon = polygon.rowwise().reverse().eval();
-    }
+    done[k].reversed = polygon_vector_area(polygon).dot(polygon_vector_area(reference)) < 0.0;
+    if (done[k].reversed) polygon = polygon.rowwise().reverse().eval();
     if (rule == StartRule::closest) {
-      rotate_columns(polygon, nearest_column(polygon, reference.col(0)));
+      done[k].first = nearest_column(polygon, reference.col(0));
     } else if (rule == StartRule::least_twist) {
       const Points<3> even = even_samples(polygon);
       const double shift = least_twist_shift(even_samples(reference), even) * sample_count;
       const auto lower = static_cast<Eigen::Index>(shift);
       const double part = shift - std::floor(shift);
       const Point3 start = (1.0 - part) * even.col(lower % sample_count) + part * even.col((lower + 1) % sample_count);
-      rotate_columns(polygon, nearest_column(polygon, start));
+      done[k].first = nearest_column(polygon, start);
     }
+    rotate_columns(polygon, done[k].first);
   }
+  return done;
 }
 
 }  // namespace isorim::geometry

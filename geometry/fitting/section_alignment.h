@@ -36,9 +36,15 @@ NurbsCurve<3> start_at(const NurbsCurve<3>& curve, double u);
 /// closed.
 std::vector<NurbsCurve<3>> align_sections(std::span<const NurbsCurve<3>> sections, StartRule rule);
 
+/// What align_polygons() did to a polygon: its order reversed, and point `first` of the reversed order put first.
+struct PolygonAlignment {
+  bool reversed = false;
+  Eigen::Index first = 0;
+};
+
 /// The same for closed polygons, 3 x n each without the first point again: their order is reversed where necessary, and
 /// another of their points becomes the first; least_twist compares points of equal parts of the polygons' lengths. What
-/// is fitted to them afterwards can have the same knots.
-void align_polygons(std::span<Points<3>> polygons, StartRule rule);
+/// is fitted to them afterwards can have the same knots. Returns what was done to each.
+std::vector<PolygonAlignment> align_polygons(std::span<Points<3>> polygons, StartRule rule);
 
 }  // namespace isorim::geometry

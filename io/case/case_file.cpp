@@ -9,6 +9,7 @@
 #include "geometry/errors.h"
 #include "io/case/analysis_checks.h"
 #include "io/expression.h"
+#include "io/fit/fit_shape.h"
 
 namespace isorim::io {
 namespace {
@@ -27,6 +28,9 @@ std::pair<int, int> value_shape(const std::string& quantity, int dim) {
 
 std::vector<std::string> quantity_names(const CaseKeys& keys, int dim) {
   std::vector<std::string> names = property_names(dim);
+  if (std::holds_alternative<FitKeys>(keys.geometry)) {
+    for (std::string& name : fit_quantity_names()) names.push_back(std::move(name));
+  }
   for (const IntegralKeys& integral : keys.integral) names.push_back(integral.name);
   for (AnalysisQuantity& quantity : analysis_quantities(keys, dim)) names.push_back(std::move(quantity.name));
   for (const PlaneSectionKeys& section : keys.section)
@@ -46,13 +50,17 @@ void complain_unknown_quantity(const std::string& name, const std::vector<std::s
 
 void check_integrals(const CaseKeys& keys, int dim, Complaints& complaints) {
   std::vector<std::string> taken = property_names(dim);
+  if (std::holds_alternative<FitKeys>(keys.geometry)) {
+    for (std::string& name : fit_quantity_names()) taken.push_back(std::move(name));
+  }
+  const std::vector<std::string> reserved = taken;
   for (const IntegralKeys& integral : keys.integral) {
     // Already complained of.
     if (integral.name.empty()) continue;
     if (contains(taken, integral.name)) {
       complaints.add(integral.where,
                      fmt::format("the name \"{}\" is taken by {}", integral.name,
-                                 contains(property_names(dim), integral.name) ? "a property" : "another integral"));
+                                 contains(reserved, integral.name) ? "a property" : "another integral"));
     }
     taken.push_back(integral.name);
   }
@@ -184,6 +192,13 @@ std::optional<int> build_shape(CaseFile& file, const FileShapeOptions& options, 
       file.cad = std::move(read.facts);
       return std::holds_alternative<BuiltBoundary<2>>(file.shape) ? 2 : 3;
     }
+    if (auto* keys = std::get_if<FitKeys>(&file.keys.geometry)) {
+      keys->folder = file.path.parent_path();
+      FitShape fitted = build_fit_shape(*keys);
+      file.shape = std::move(fitted.boundary);
+      file.fit = std::move(fitted.facts);
+      return dim;
+    }
     if (dim == 2) {
       file.shape = build_boundary<2>(file.keys.geometry);
     } else {
@@ -210,6 +225,10 @@ std::vector<std::string> property_names(int dim) {
   const std::string boundary = dim == 2 ? "perimeter" : "area";
   const std::string domain = dim == 2 ? "area" : "volume";
   return {boundary, domain, "centroid", "inertia", "principal_moments", "mass", "closure_defect"};
+}
+
+std::vector<std::string> fit_quantity_names() {
+  return {"control_points", "max_distance", "rms_distance", "bending_energy", "curvature_sign_changes"};
 }
 
 CaseFile read_case(const Value& root, const std::filesystem::path& path, const FileShapeOptions& options) {

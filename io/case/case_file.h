@@ -13,6 +13,7 @@
 #include "io/case/shape_builder.h"
 #include "io/case/shape_keys.h"
 #include "io/expression.h"
+#include "io/fit/fit_facts.h"
 
 /// A case file, read and validated: the keys as they stand there with their defaults filled in. The declarations are
 /// in section_declarations.cpp and shape_declarations.cpp.
@@ -105,6 +106,8 @@ struct CaseFile {
   AnyBoundary shape;
   /// If the shape comes from a CAD file.
   std::optional<CadFacts> cad;
+  /// If the shape is fitted to points.
+  std::optional<FitFacts> fit;
   /// The case with its overrides, as TOML.
   std::string resolved;
 
@@ -133,5 +136,9 @@ CaseFile read_case_or_cad(const std::filesystem::path& path, const std::vector<s
 
 /// The quantities that [expect] and [convergence] may name besides the integrals, in dimension `dim`.
 std::vector<std::string> property_names(int dim);
+
+/// Those that a fitted shape has besides: "control_points", "max_distance", "rms_distance", "bending_energy",
+/// "curvature_sign_changes".
+std::vector<std::string> fit_quantity_names();
 
 }  // namespace isorim::io

@@ -494,6 +494,7 @@ std::optional<int> dimension(const GeometryKeys& geometry) {
       [](const auto& shape) -> std::optional<int> {
         using Keys = std::decay_t<decltype(shape)>;
         if constexpr (std::is_same_v<Keys, FileKeys>) return std::nullopt;
+        if constexpr (std::is_same_v<Keys, FitKeys>) return shape.is_body() ? 3 : 2;
         if constexpr (std::is_same_v<Keys, NurbsKeys>) return shape.patches.empty() ? 2 : 3;
         const bool plane = std::is_same_v<Keys, CircleKeys> || std::is_same_v<Keys, EllipseKeys> ||
                            std::is_same_v<Keys, EllipseArcKeys> || std::is_same_v<Keys, RectangleKeys> ||

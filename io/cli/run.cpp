@@ -9,6 +9,7 @@
 #include "io/analysis/solution_pictures.h"
 #include "io/cli/commands.h"
 #include "io/cli/interrupts.h"
+#include "io/fit/fit_pictures.h"
 #include "io/results/compute.h"
 #include "io/results/convergence.h"
 #include "io/results/hdf5.h"
@@ -45,6 +46,8 @@ void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io
   if (output.svg) io::write_boundary_svg(folder / "boundary.svg", report.title, model);
   if (output.svg) io::write_tmesh_svgs(folder, file.shape);
   if (report.sections) io::write_sections(folder, *report.sections, output);
+  if (file.fit) io::write_fit_points(folder / "fit_points.csv", *file.fit);
+  if (file.fit && output.svg) io::write_fit_svg(folder / "fit.svg", report.title, *file.fit);
   if (file.keys.convergence) {
     io::write_convergence_csv(folder / "convergence.csv", study);
     io::write_convergence_svg(folder / "convergence.svg", report.title, study);

@@ -319,6 +319,23 @@ void add_sections(const CaseFile& file, const Model<Dim>& model, const RunOption
   }
 }
 
+// --- Fits -----------------------------------------------------------------------------------------------------
+
+void add_fit(const CaseFile& file, Report& report) {
+  if (!file.fit) return;
+  const FitSummary all = summarise(*file.fit);
+  const auto add = [&](const char* name, double value) {
+    report.fit_quantities.push_back({name, single(value), {}, {}, {}, ""});
+  };
+  add("control_points", all.control_points);
+  add("max_distance", all.max_distance);
+  add("rms_distance", all.rms_distance);
+  add("bending_energy", all.bending_energy);
+  add("curvature_sign_changes", all.curvature_sign_changes);
+  report.fit = file.fit;
+  report.warnings.insert(report.warnings.end(), file.fit->warnings.begin(), file.fit->warnings.end());
+}
+
 // --- Expectations ---------------------------------------------------------------------------------------------
 
 void compare_expectations(const CaseFile& file, Report& report) {
@@ -367,6 +384,7 @@ Report report_of(const CaseFile& file, const Model<Dim>& model, const RunOptions
   report.geometry = summary_of(model);
   report.cad = file.cad;
   if (file.cad) report.warnings = file.cad->warnings;
+  add_fit(file, report);
   add_properties(file, model, run, report);
   for (const IntegralKeys& keys : file.keys.integral) {
     if (!is_result_integral(file, keys, Dim)) report.integrals.push_back(integrate(file, keys, model, run));

@@ -7,6 +7,7 @@
 
 #include "io/atomic_file.h"
 #include "io/results/analysis_json.h"
+#include "io/results/fit_json.h"
 #include "io/results/json_parts.h"
 #include "io/results/section_json.h"
 
@@ -82,6 +83,7 @@ std::string to_json(const Report& report) {
   json["status"] = status_name(report.status);
   json["geometry"] = geometry_json(report.geometry, report.cad);
   if (report.cad) json["cad"] = cad_json(*report.cad);
+  if (report.fit) json["fit"] = fit_json(*report.fit);
   json["properties"] = quantities_json(report.properties);
   json["integrals"] = quantities_json(report.integrals);
   if (report.analysis) json["analysis"] = analysis_json(*report.analysis);

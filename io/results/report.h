@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/cad/cad_facts.h"
+#include "io/fit/fit_facts.h"
 #include "io/results/analysis_report.h"
 #include "quadrature/estimate.h"
 
@@ -112,6 +113,9 @@ struct Report {
   GeometrySummary geometry;
   /// If the shape comes from a CAD file.
   std::optional<CadFacts> cad;
+  /// If the shape is fitted to points, and fit_quantity_names() of it.
+  std::optional<FitFacts> fit;
+  std::vector<Quantity> fit_quantities;
   std::vector<Quantity> properties;
   std::vector<Quantity> integrals;
   /// If the case is an analysis; its fields on the boundary, for the writers of pictures.
@@ -125,7 +129,7 @@ struct Report {
   /// What the user should know though the run went well: a boundary that is open, ...
   std::vector<std::string> warnings;
 
-  /// A property or integral; null if there is none of the name.
+  /// A property, integral or quantity of a fit; null if there is none of the name.
   const Quantity* find(std::string_view name) const;
 };
 

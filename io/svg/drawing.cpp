@@ -86,8 +86,10 @@ Point2 evaluate(PathSegment points, double t) {
 
 /// The extent of what is drawn.
 Bounds drawn_bounds(const Drawing& drawing, const std::vector<DrawableChain>& drawable) {
-  if (drawing.show_control_net) return control_bounds(drawing);
   Bounds bounds;
+  if (drawing.show_control_net) bounds = control_bounds(drawing);
+  for (const Points<2>& marks : drawing.marks) bounds.add(marks);
+  for (const Comb& comb : drawing.combs) bounds.add(comb.tips);
   for (const DrawableChain& chain : drawable) {
     for (const PathSegment& segment : chain) {
       bounds.add(segment.leftCols(1));
@@ -156,6 +158,36 @@ std::string chain_path(const DrawableChain& chain, const Layout& layout, double 
   return path + (is_closed(chain, tolerance) ? "Z" : "");
 }
 
+std::string draw_marks(const Drawing& drawing, const Layout& layout) {
+  std::string circles;
+  for (const Points<2>& marks : drawing.marks) {
+    const PathSegment pixels = layout.to_pixels(marks);
+    for (Eigen::Index i = 0; i < pixels.cols(); ++i) {
+      circles += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"2\"/>\n", number(pixels(0, i)), number(pixels(1, i)));
+    }
+  }
+  return circles.empty() ? "" : "<g class=\"data\" fill=\"#222\">\n" + circles + "</g>\n";
+}
+
+std::string draw_combs(const Drawing& drawing, const Layout& layout) {
+  std::string teeth;
+  std::string envelopes;
+  for (const Comb& comb : drawing.combs) {
+    const PathSegment feet = layout.to_pixels(comb.feet);
+    const PathSegment tips = layout.to_pixels(comb.tips);
+    for (Eigen::Index i = 0; i < feet.cols(); ++i) {
+      teeth +=
+          fmt::format("M{} {}L{} {}", number(feet(0, i)), number(feet(1, i)), number(tips(0, i)), number(tips(1, i)));
+      envelopes += fmt::format("{}{} {}", i == 0 ? 'M' : 'L', number(tips(0, i)), number(tips(1, i)));
+    }
+  }
+  if (teeth.empty()) return "";
+  return fmt::format(
+      "<path class=\"comb\" d=\"{}\" fill=\"none\" stroke=\"#009e73\" stroke-width=\"0.5\"/>\n"
+      "<path class=\"comb envelope\" d=\"{}\" fill=\"none\" stroke=\"#009e73\" stroke-width=\"0.9\"/>\n",
+      teeth, envelopes);
+}
+
 std::string draw_chains(const std::vector<DrawableChain>& chains, const Layout& layout, double tolerance, bool fill) {
   std::string closed;
   std::string open;
@@ -164,12 +196,12 @@ std::string draw_chains(const std::vector<DrawableChain>& chains, const Layout& 
     (is_closed(chain, tolerance) ? closed : open) += chain_path(chain, layout, tolerance);
   }
   std::string result;
-  const auto draw = [&](const std::string& path, std::string_view name, std::string_view fill) {
+  const auto draw = [&](const std::string& path, std::string_view name, std::string_view paint) {
     if (path.empty()) return;
     result += fmt::format(
         "<path class=\"{}\" d=\"{}\" fill=\"{}\" fill-rule=\"evenodd\" stroke=\"#0072b2\" stroke-width=\"1.6\" "
         "stroke-linejoin=\"round\"/>\n",
-        name, path, fill);
+        name, path, paint);
   };
   draw(closed, fill ? "region" : "curves", fill ? "#d6e8f4" : "none");
   draw(open, "curves", "none");
@@ -233,8 +265,8 @@ std::string to_svg(const Drawing& drawing) {
   const std::vector<DrawableChain> drawable = drawable_chains(drawing, tolerance);
   const Layout layout = lay_out(drawing, drawn_bounds(drawing, drawable));
   return open_document(layout.width, layout.height, drawing.title) + draw_title(drawing, layout) +
-         draw_chains(drawable, layout, 1e-6 * size, drawing.fill) +
-         (drawing.show_control_net ? draw_control_net(drawing, layout) : "") + "</svg>\n";
+         draw_combs(drawing, layout) + draw_chains(drawable, layout, 1e-6 * size, drawing.fill) +
+         draw_marks(drawing, layout) + (drawing.show_control_net ? draw_control_net(drawing, layout) : "") + "</svg>\n";
 }
 
 void write_svg(const std::filesystem::path& path, const Drawing& drawing) {

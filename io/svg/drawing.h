@@ -14,12 +14,23 @@ namespace isorim::io::svg {
 /// Curves of which each starts where the one before ends; closed if the last ends where the first starts.
 using Chain = std::vector<geometry::NurbsCurve<2>>;
 
+/// A curvature comb: teeth from the curve outwards, as long as its curvature says.
+struct Comb {
+  /// 2 x n each: tooth i goes from foot i to tip i.
+  geometry::Points<2> feet;
+  geometry::Points<2> tips;
+};
+
 struct Drawing {
   std::string title;
   /// The area inside the closed chains is filled by the even-odd rule, so holes stay empty; open ones are lines.
   std::vector<Chain> chains;
   /// false: closed chains are lines as well.
   bool fill = true;
+  /// Points under the curves, such as those that they were fitted to.
+  std::vector<geometry::Points<2>> marks = {};
+  /// Teeth, and a line through their tips.
+  std::vector<Comb> combs = {};
   bool show_control_net = false;
   bool show_axes = true;
   /// Axis labels, with the unit of length where there is one.

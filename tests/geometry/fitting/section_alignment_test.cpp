@@ -108,7 +108,9 @@ TEST(AlignPolygons, UndoShiftsAndReversals) {
   rotated << polygon.rightCols(60), polygon.leftCols(30);
   for (const StartRule rule : {StartRule::least_twist, StartRule::closest}) {
     std::vector<Points<3>> polygons{polygon, rotated, rotated.rowwise().reverse()};
-    align_polygons(polygons, rule);
+    const std::vector<PolygonAlignment> done = align_polygons(polygons, rule);
+    EXPECT_EQ(done[1].first, 60);
+    EXPECT_TRUE(done[2].reversed);
     EXPECT_EQ(polygons[1], polygon);
     EXPECT_EQ(polygons[2].col(0), polygon.col(0));
     EXPECT_EQ(polygons[2].col(1), polygon.col(1));
