@@ -19,13 +19,14 @@ struct CompressedSystem {
   Eigen::MatrixXd columns;
   Eigen::MatrixXd rows;
   Eigen::VectorXd right;
+  /// What the preconditioner needs to serve functions of this degree.
+  double factor_tolerance = 1e-2;
 };
 
-/// Blocks whose functions are far from their points are made from the kernel at the quadrature nodes (one evaluation a
-/// node instead of an integral for each entry), within options.tolerance in the Frobenius norm of the whole; near ones
-/// by the code of dense systems, element by element for all functions at once. The sums over the whole boundary that
-/// the removal of constants and the known data need are taken directly, with few nodes for far elements. The numbers do
-/// not depend on how many threads there are.
+/// Blocks whose functions are far from their points are interpolated from few of their rows (interpolate_rows()),
+/// within options.tolerance in the Frobenius norm of the whole; others are integrated as those of dense systems are. So
+/// are the sums over the whole boundary that the removal of constants and the known data need: nothing costs the square
+/// of the unknowns. The numbers do not depend on how many threads there are.
 template <int Dim>
 CompressedSystem assemble_compressed(const Assembler<Dim>& assembler, const SideConditions<Dim>& sides,
                                      const SolveOptions& options);
@@ -38,8 +39,9 @@ struct CompressedSolution {
   std::size_t memory = 0;
 };
 
-/// GMRES to options.tolerance, preconditioned by a hierarchical LU factorisation at a loose tolerance (with the side
-/// conditions eliminated from it). Throws NumericalError, naming residual and iterations, if it does not converge.
+/// GMRES to a tenth of options.tolerance, preconditioned by a hierarchical LU factorisation at a loose tolerance (with
+/// the side conditions eliminated from it). Throws NumericalError, naming residual and iterations, if it does not
+/// converge.
 CompressedSolution solve_compressed(const CompressedSystem& system, const SolveOptions& options);
 
 }  // namespace isorim::solver

@@ -20,8 +20,9 @@ enum class SolveMethod {
 };
 
 struct SolveOptions {
-  /// Scalar unknowns; a dense matrix of this size takes 200 MB.
-  static constexpr int automatic_limit = 5000;
+  /// Scalar unknowns: compressed matrices take less time than dense ones from 2500 on with a tolerance of 1e-6, from 4000
+  /// on with 1e-10 (tests/benchmarks/bem_scaling.cpp), and less memory from there on too.
+  static constexpr int automatic_limit = 4000;
   SolveMethod method = SolveMethod::automatic;
   /// Relative: of the compression, of the iterations, and what the quadrature aims at.
   double tolerance = 1e-10;

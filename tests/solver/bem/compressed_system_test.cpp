@@ -127,6 +127,16 @@ TEST(CompressedSystem, KeepsToTheToleranceInMatrixAndRightSides) {
                         "elasticity");
 }
 
+TEST(CompressedSystem, IterationsDoNotGrowWithRefinementOrDegree) {
+  const auto iterations = [](int degree, int refine) {
+    const FieldSpace<3> space = test::space_on(geometry::sphere(1.0), degree, refine);
+    const auto problem = test::problem_from<3>(quadratic_potential<3>(), test::laplace_on(space), space, {value});
+    return solve_by(SolveMethod::compressed, problem, space, 1e-6).iterations;
+  };
+  for (int refine = 1; refine <= 4; ++refine) EXPECT_LE(iterations(1, refine), 8) << "refinement " << refine;
+  for (int degree = 1; degree <= 8; ++degree) EXPECT_LE(iterations(degree, 1), 8) << "degree " << degree;
+}
+
 TEST(CompressedSystem, AnyNumberOfThreadsGivesTheSameBits) {
   const FieldSpace<3> space = test::space_on(geometry::cube(1.0), 2, 2);
   const auto problem = test::problem_from<3>(quadratic_potential<3>(), test::laplace_on(space), space, {value, flux});
