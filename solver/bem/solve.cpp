@@ -23,6 +23,11 @@ int highest_degree(const FieldSpace<Dim>& space) {
   return highest;
 }
 
+/// Blocks of vectors have ranks three times as high and half as many points.
+int automatic_limit(int components) {
+  return components > 1 ? 2 * SolveOptions::automatic_limit : SolveOptions::automatic_limit;
+}
+
 template <int Dim>
 Eigen::VectorXd constant_at_infinity(const SideConditions<Dim>& sides, const Eigen::VectorXd& extra, int components) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(components);
@@ -67,7 +72,7 @@ Solution<Dim> solve(const Problem<Dim>& problem, const FieldSpace<Dim>& space, c
   const Assembler<Dim> assembler(problem, space, rules, sides.flux_modes);
   const bool is_compressed =
       options.method == SolveMethod::compressed ||
-      (options.method == SolveMethod::automatic && assembler.size() > SolveOptions::automatic_limit);
+      (options.method == SolveMethod::automatic && assembler.size() > automatic_limit(assembler.components()));
 
   Solution<Dim> solution;
   solution.messages = sides.messages;

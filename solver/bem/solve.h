@@ -13,15 +13,16 @@
 namespace isorim::solver {
 
 enum class SolveMethod {
-  /// dense up to automatic_limit unknowns, compressed above.
+  /// dense up to automatic_limit unknowns (twice that in elasticity), compressed above.
   automatic,
   dense,
   compressed,
 };
 
 struct SolveOptions {
-  /// Scalar unknowns: compressed matrices take less time than dense ones from 2500 on with a tolerance of 1e-6, from 4000
-  /// on with 1e-10 (tests/benchmarks/bem_scaling.cpp), and less memory from there on too.
+  /// Scalar unknowns of potentials, twice as many of displacements. In space compressed matrices take less time than
+  /// dense ones from 2500 (7500) on with a tolerance of 1e-6, and less memory long before (pictures/bem_scaling.csv);
+  /// with 1e-10 potentials of 2246 unknowns still take a quarter more.
   static constexpr int automatic_limit = 4000;
   SolveMethod method = SolveMethod::automatic;
   /// Relative: of the compression, of the iterations, and what the quadrature aims at.

@@ -255,7 +255,7 @@ void draw(const std::vector<std::pair<Run, Measured>>& results, const std::strin
 int run_all(const std::filesystem::path& folder, const std::vector<std::string>& names) {
   std::filesystem::create_directories(folder);
   std::ofstream table(folder / "bem_scaling.csv");
-  table << "series,degree,refine,method,unknowns,cpu_seconds,peak_MB,matrix_MB,iterations,error\n";
+  table << "series,degree,cuts,refine,method,unknowns,cpu_seconds,peak_MB,matrix_MB,iterations,error\n";
   std::vector<std::pair<Run, Measured>> results;
   bool all_well = true;
   for (const Run& run : all_runs()) {
@@ -267,7 +267,7 @@ int run_all(const std::filesystem::path& folder, const std::vector<std::string>&
       continue;
     }
     const std::string line =
-        fmt::format("{},{},{},{},{},{:.2f},{:.1f},{:.1f},{},{:.2e}\n", run.series, run.degree, run.refine,
+        fmt::format("{},{},{},{},{},{},{:.2f},{:.1f},{:.1f},{},{:.2e}\n", run.series, run.degree, run.cuts, run.refine,
                     name_of(run.method), measured.unknowns, measured.cpu_seconds, measured.peak_megabytes,
                     measured.matrix_megabytes, measured.iterations, measured.error);
     table << line << std::flush;
