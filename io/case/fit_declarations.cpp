@@ -151,7 +151,8 @@ const Schema<FitKeys>& schema<FitKeys>() {
                {.text = "method = \"fixed_knots\": how often parameters move to the nearest points of the curve.",
                 .range = Range::between(0, 1000)})
           .key("fairness", &FitKeys::fairness,
-               {.text = "Weight of the curve's bending against its distance from the points; about 1 is felt.",
+               {.text = "Factor of the integral of the squared third derivative over the parameters 0 to 1, which is "
+                        "added to the mean squared distance. 0: method = \"free\" chooses one, the others take none.",
                 .range = Range::at_least(0)})
           .key("corner_angle", &FitKeys::corner_angle,
                {.text = "Points at which the data turn by more become corners; 0: none.",

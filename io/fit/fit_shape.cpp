@@ -281,7 +281,8 @@ class FitBuilder {
       options.point_weights = contour.weights;
     }
     options.parameter_corrections = keys_.corrections;
-    options.fairness = keys_.fairness;
+    // 0 leaves it to the method.
+    if (keys_.fairness > 0.0) options.fairness = keys_.fairness;
     options.corner_angle = keys_.corner_angle;
     return options;
   }
