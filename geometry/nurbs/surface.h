@@ -84,6 +84,10 @@ template <int Dim>
 std::pair<NurbsSurface<Dim>, NurbsSurface<Dim>> split(const NurbsSurface<Dim>& surface, Direction direction, double u);
 template <int Dim>
 NurbsSurface<Dim> restrict_to(const NurbsSurface<Dim>& surface, Interval u, Interval v);
+/// The surface over a larger domain in one direction, in which its first and last elements continue as they are. Throws
+/// GeometryError if `domain` does not contain the surface's, and if a weight would not stay positive.
+template <int Dim>
+NurbsSurface<Dim> extend(const NurbsSurface<Dim>& surface, Direction direction, Interval domain);
 /// Reverses one parameter, so the normal turns round.
 template <int Dim>
 NurbsSurface<Dim> reverse(const NurbsSurface<Dim>& surface, Direction direction);

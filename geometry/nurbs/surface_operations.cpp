@@ -98,6 +98,11 @@ NurbsSurface<Dim> restrict_to(const NurbsSurface<Dim>& surface, Interval u, Inte
 }
 
 template <int Dim>
+NurbsSurface<Dim> extend(const NurbsSurface<Dim>& surface, Direction direction, Interval domain) {
+  return as_surface<Dim>(extend(as_spline(surface, direction), domain), direction, surface.knots(other(direction)));
+}
+
+template <int Dim>
 NurbsSurface<Dim> reverse(const NurbsSurface<Dim>& surface, Direction direction) {
   return as_surface<Dim>(reverse(as_spline(surface, direction)), direction, surface.knots(other(direction)));
 }
@@ -138,6 +143,7 @@ std::array<NurbsCurve<Dim>, 4> boundary_curves(const NurbsSurface<Dim>& surface)
   template NurbsSurface<Dim> clamp(const NurbsSurface<Dim>&);                                                  \
   template std::pair<NurbsSurface<Dim>, NurbsSurface<Dim>> split(const NurbsSurface<Dim>&, Direction, double); \
   template NurbsSurface<Dim> restrict_to(const NurbsSurface<Dim>&, Interval, Interval);                        \
+  template NurbsSurface<Dim> extend(const NurbsSurface<Dim>&, Direction, Interval);                            \
   template NurbsSurface<Dim> reverse(const NurbsSurface<Dim>&, Direction);                                     \
   template NurbsSurface<Dim> swap_directions(const NurbsSurface<Dim>&);                                        \
   template NurbsSurface<Dim> transform(const NurbsSurface<Dim>&, const AffineMap<Dim>&);                       \

@@ -14,6 +14,7 @@
 #include "geometry/shapes/checks.h"
 #include "geometry/shapes/curves.h"
 #include "geometry/spline/bspline.h"
+#include "geometry/spline/interpolation.h"
 
 namespace isorim::geometry {
 namespace {
@@ -112,19 +113,6 @@ std::vector<double> section_parameters(std::span<const NurbsCurve<3>> sections, 
   return parameters;
 }
 
-/// Piegl & Tiller, eq. 9.8.
-KnotVector averaged_knots(int degree, std::span<const double> parameters) {
-  const std::size_t p = static_cast<std::size_t>(degree);
-  std::vector<double> knots(p + 1, 0.0);
-  for (std::size_t j = 1; j + p < parameters.size(); ++j) {
-    double sum = 0.0;
-    for (std::size_t i = j; i < j + p; ++i) sum += parameters[i];
-    knots.push_back(sum / degree);
-  }
-  knots.insert(knots.end(), p + 1, 1.0);
-  return {degree, std::move(knots)};
-}
-
 /// Knots at the parameters: for odd degrees the periodic interpolation there is well posed.
 KnotVector periodic_knots(int degree, std::span<const double> parameters) {
   const std::size_t sections = parameters.size() - 1;
@@ -133,18 +121,6 @@ KnotVector periodic_knots(int degree, std::span<const double> parameters) {
         "loft: degree is {}; closed lofts need an odd one, at most the number of sections, {}", degree, sections));
   }
   return KnotVector::periodic(degree, parameters);
-}
-
-/// Row k holds the values of the basis functions at parameters[k].
-Eigen::MatrixXd collocation_matrix(const KnotVector& knots, std::span<const double> parameters) {
-  const Eigen::Index count = static_cast<Eigen::Index>(parameters.size());
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, knots.basis_count());
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const double v = parameters[static_cast<std::size_t>(k)];
-    const int span = knots.find_span(v);
-    matrix.block(k, span - knots.degree(), 1, knots.degree() + 1) = basis_derivatives(knots, span, v, 0).row(0);
-  }
-  return matrix;
 }
 
 /// One curve a column of the net, stacked as the surface stores them.

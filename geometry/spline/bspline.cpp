@@ -140,6 +140,30 @@ BSpline restrict_to(const BSpline& spline, Interval piece) {
   return without_right_part(without_left_part(spline, piece.first), piece.last);
 }
 
+BSpline extend(const BSpline& spline, Interval domain) {
+  BSpline result = clamp(spline);
+  const Interval own = result.knots.domain();
+  if (!(std::isfinite(domain.first) && std::isfinite(domain.last) && domain.first <= own.first &&
+        own.last <= domain.last)) {
+    throw GeometryError(fmt::format("B-spline: the domain [{}, {}] to extend to does not contain [{}, {}]",
+                                    domain.first, domain.last, own.first, own.last));
+  }
+  const int p = result.knots.degree();
+  if (domain.first < own.first) {
+    cut_from_left(result.knots, p, domain.first, result.coefficients.leftCols(p + 1));
+    std::vector<double> knots(result.knots.knots().begin(), result.knots.knots().end());
+    std::fill_n(knots.begin(), p + 1, domain.first);
+    result.knots = KnotVector(p, std::move(knots));
+  }
+  if (own.last < domain.last) {
+    cut_from_right(result.knots, result.knots.basis_count() - 1, domain.last, result.coefficients.rightCols(p + 1));
+    std::vector<double> knots(result.knots.knots().begin(), result.knots.knots().end());
+    std::fill_n(knots.end() - p - 1, p + 1, domain.last);
+    result.knots = KnotVector(p, std::move(knots));
+  }
+  return result;
+}
+
 BSpline reverse(const BSpline& spline) {
   require_consistent(spline);
   const Interval domain = spline.knots.domain();

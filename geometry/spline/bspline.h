@@ -58,6 +58,10 @@ BSpline clamp(const BSpline& spline);
 /// The part of the spline over `piece` (inside the domain), clamped.
 BSpline restrict_to(const BSpline& spline, Interval piece);
 
+/// The same spline on a clamped knot vector over `domain`, which contains its own: the end pieces continue as the
+/// polynomials that they are. Throws GeometryError if the domain does not contain the spline's.
+BSpline extend(const BSpline& spline, Interval domain);
+
 /// u -> spline(first + last - u).
 BSpline reverse(const BSpline& spline);
 

@@ -187,6 +187,31 @@ TEST(BSpline, ClampingChangesNothing) {
   }
 }
 
+TEST(BSpline, ExtensionContinuesTheEndPieces) {
+  Random random(41);
+  for (int trial = 0; trial < 50; ++trial) {
+    const BSpline spline = random_spline(random, random_knots(random, random.integer(1, 5)), 3);
+    const Interval domain = spline.knots.domain();
+    const Interval larger{domain.first - random.real(0.0, 0.3), domain.last + random.real(0.0, 0.3)};
+    const BSpline extended = extend(spline, larger);
+    EXPECT_TRUE(extended.knots.is_clamped());
+    EXPECT_EQ(extended.knots.domain().first, larger.first);
+    EXPECT_EQ(extended.knots.domain().last, larger.last);
+    EXPECT_EQ(extended.knots.basis_count(), clamp(spline).knots.basis_count());
+    for (int k = 0; k <= 40; ++k) {
+      // Outside its domain a spline is evaluated as the polynomial of its end piece.
+      const double u = std::lerp(larger.first, larger.last, k / 40.0);
+      EXPECT_LE((evaluate_derivatives(extended, u, 0) - evaluate_derivatives(spline, u, 0)).norm(), 3e-10) << u;
+    }
+  }
+}
+
+TEST(BSpline, ExtensionRefusesASmallerDomain) {
+  const BSpline spline{KnotVector::bezier(2), Eigen::MatrixXd::Ones(1, 3)};
+  EXPECT_THROW(extend(spline, {0.1, 1.0}), GeometryError);
+  EXPECT_THROW(extend(spline, {0.0, std::numeric_limits<double>::quiet_NaN()}), GeometryError);
+}
+
 TEST(BSpline, RestrictionChangesNothing) {
   Random random(20);
   for (int trial = 0; trial < trials; ++trial) {

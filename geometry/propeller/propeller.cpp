@@ -1,0 +1,141 @@
+#include "geometry/propeller/propeller.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "geometry/errors.h"
+#include "geometry/intersection/clip.h"
+#include "geometry/shapes/checks.h"
+#include "geometry/shapes/sweeps.h"
+#include "geometry/shapes/transforms.h"
+#include "geometry/topology/orientation.h"
+#include "geometry/trimming/trimmed_surface.h"
+
+namespace isorim::geometry {
+namespace {
+
+/// The part of the hub's radius that the blades' inner ends stay below, so that the hub cuts them cleanly.
+constexpr double reach = 0.97;
+/// How far a blade's surface may be continued inward, as a part of its domain.
+constexpr double longest_extension = 0.25;
+/// Of the hub beyond the blades, in its radii.
+constexpr double overhang = 0.25;
+
+void check_propeller(const Propeller& screw) {
+  if (screw.blades < 1) throw GeometryError(fmt::format("propeller: {} blades, at least 1 is needed", screw.blades));
+  if (!screw.hub) return;
+  checks::positive("propeller hub", "radius", screw.hub->radius);
+  if (screw.hub->aft) checks::finite("propeller hub", "aft", *screw.hub->aft);
+  if (screw.hub->forward) checks::finite("propeller hub", "forward", *screw.hub->forward);
+}
+
+/// Largest distance of the surface's inner edge from the shaft.
+double inner_radius(const NurbsSurface<3>& surface) {
+  const NurbsCurve<3> edge = isoparametric_curve(surface, Direction::u, surface.knots_v().domain().first);
+  const Interval domain = edge.domain();
+  double largest = 0.0;
+  constexpr int samples = 200;
+  for (int i = 0; i <= samples; ++i) {
+    const Point3 point = evaluate(edge, std::lerp(domain.first, domain.last, static_cast<double>(i) / samples));
+    largest = std::max(largest, std::hypot(point.y(), point.z()));
+  }
+  return largest;
+}
+
+/// The surface, continued inward until its inner edge lies inside the hub.
+NurbsSurface<3> into_hub(const NurbsSurface<3>& surface, double hub_radius) {
+  if (inner_radius(surface) <= reach * hub_radius) return surface;
+  const Interval domain = surface.knots_v().domain();
+  for (double part = 0.01; part <= longest_extension; part *= 1.25) {
+    const NurbsSurface<3> extended =
+        extend(surface, Direction::v, {domain.first - part * domain.length(), domain.last});
+    if (inner_radius(extended) <= reach * hub_radius) return extended;
+  }
+  throw GeometryError(fmt::format(
+      "propeller: the blades start at a radius of {:.6g}, too far outside the hub of radius {:.6g} to be continued "
+      "into it; add a section farther in",
+      inner_radius(surface), hub_radius));
+}
+
+std::string blade_patch_name(const std::string& part, int blade) {
+  return part == "blade" ? fmt::format("blade_{}", blade) : fmt::format("blade_{}_{}", blade, part);
+}
+
+/// Copies about the shaft.
+Boundary<3> all_blades(const Boundary<3>& blade, int count) {
+  Boundary<3> result;
+  for (int k = 0; k < count; ++k) {
+    const Axis shaft{Point3::Zero(), Vector3::UnitX()};
+    Boundary<3> turned = transform(blade, rotation(shaft, 2.0 * std::numbers::pi * k / count));
+    for (Patch<3>& patch : turned.patches) {
+      patch.name = blade_patch_name(patch.name, k + 1);
+      result.patches.push_back(std::move(patch));
+    }
+  }
+  return result;
+}
+
+TrimLoop reversed(const TrimLoop& loop) {
+  TrimLoop result;
+  for (auto curve = loop.curves.rbegin(); curve != loop.curves.rend(); ++curve)
+    result.curves.push_back(reverse(*curve));
+  return result;
+}
+
+/// The hub's side and ends, given the part of the side that the blades cover.
+std::vector<Patch<3>> hub_patches(const TrimmedSurface& covered, const Hub& hub) {
+  const Interval blades = covered.surface().knots_v().domain();
+  const Interval ends{hub.aft.value_or(blades.first - overhang * hub.radius),
+                      hub.forward.value_or(blades.last + overhang * hub.radius)};
+  if (blades.first < ends.first || ends.last < blades.last) {
+    throw GeometryError(fmt::format(
+        "propeller hub: it runs from X = {:.6g} to {:.6g}; the blades on it need {:.6g} to {:.6g}, with a margin",
+        ends.first, ends.last, blades.first, blades.last));
+  }
+  const NurbsSurface<3> side = extend(covered.surface(), Direction::v, ends);
+  std::vector<TrimLoop> loops{domain_loop(side)};
+  for (const TrimLoop& loop : covered.loops()) loops.push_back(reversed(loop));
+  const std::array<NurbsCurve<3>, 4> edges = boundary_curves(side);
+  return {{"hub", TrimmedSurface(side, std::move(loops))},
+          {"hub_aft", fan<3>(edges[0], Point3(ends.first, 0.0, 0.0))},
+          {"hub_forward", fan<3>(edges[2], Point3(ends.last, 0.0, 0.0))}};
+}
+
+/// The blades outside the hub, and the hub outside the blades.
+Boundary<3> joined(const Boundary<3>& blades, const Hub& hub) {
+  const CylinderTool tool{Point3::Zero(), Vector3::UnitX(), hub.radius, KeptSide::outside};
+  Boundary<3> result;
+  std::vector<Patch<3>> hub_parts;
+  for (Patch<3>& patch : clip(blades, tool).patches) {
+    if (patch.name == "cap")
+      hub_parts = hub_patches(std::get<TrimmedSurface>(patch.shape), hub);
+    else
+      result.patches.push_back(std::move(patch));
+  }
+  if (hub_parts.empty())
+    throw GeometryError(fmt::format("propeller: the blades do not reach the hub of radius {:.6g}", hub.radius));
+  for (Patch<3>& patch : hub_parts) result.patches.push_back(std::move(patch));
+  return result;
+}
+
+}  // namespace
+
+Boundary<3> propeller(const Propeller& screw) {
+  check_propeller(screw);
+  const NurbsSurface<3> surface = blade_surface(screw.sections, screw.surface);
+  const NurbsSurface<3> reaching = screw.hub ? into_hub(surface, screw.hub->radius) : surface;
+  const Boundary<3> blades = all_blades(close_blade(reaching, leading_edge_parameter(screw.sections)), screw.blades);
+  OrientedBoundary<3> oriented = orient(screw.hub ? joined(blades, *screw.hub) : blades);
+  require_closed(oriented);
+  return std::move(oriented.boundary);
+}
+
+}  // namespace isorim::geometry

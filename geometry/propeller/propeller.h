@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/boundary.h"
+#include "geometry/propeller/blade_surface.h"
+
+namespace isorim::geometry {
+
+/// A round hub about the shaft (the X axis) with plane ends.
+struct Hub {
+  double radius = 0.0;
+  /// X of the after and the forward end; absent: a quarter of the radius beyond the blades.
+  std::optional<double> aft = std::nullopt;
+  std::optional<double> forward = std::nullopt;
+};
+
+/// A screw: equal blades, a turn over their number apart, the first along Z.
+struct Propeller {
+  /// From the root to the tip.
+  std::vector<BladeSection> sections;
+  int blades = 4;
+  BladeSurfaceOptions surface;
+  /// Without one the blades stand alone, each closed at its root.
+  std::optional<Hub> hub;
+};
+
+/// The screw as one closed boundary, oriented outward. The patches of blade k are "blade_k", and "blade_k_tip",
+/// "blade_k_trailing_edge", without a hub also "blade_k_root", where blade_solid() has such; those of the hub "hub",
+/// "hub_aft", "hub_forward".
+///
+/// Blades end on the hub along curves that are traced to rounding: blade and hub are trimmed along the same curve.
+/// Where the first section does not reach into the hub the blade's surface continues inward as the polynomial that it
+/// is.
+///
+/// Throws GeometryError as blade_solid() does; for blades < 1; for a hub whose measures are not positive, which the
+/// blades do not reach, which is larger than they, or whose ends cut them.
+Boundary<3> propeller(const Propeller& propeller);
+
+}  // namespace isorim::geometry
