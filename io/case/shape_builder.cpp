@@ -19,6 +19,7 @@
 #include "geometry/shapes/transforms.h"
 #include "io/case/curve_builder.h"
 #include "io/case/face_builder.h"
+#include "io/case/propeller_builder.h"
 #include "io/case/tspline_builder.h"
 
 namespace isorim::io {
@@ -354,6 +355,7 @@ struct SurfaceBuilder {
     return face("quadrilateral", quadrilateral_surface(keys), keys);
   }
   Result operator()(const NurbsPatchKeys& keys) const { return face("nurbs", nurbs_surface(keys), keys); }
+  Result operator()(const PropellerKeys& keys) const { return propeller(keys); }
   Result operator()(const TSplineKeys& keys) const {
     const Result source = keys.from.items.empty() ? Result{} : nurbs_surfaces(keys.from.items);
     Result result;

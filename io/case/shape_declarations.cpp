@@ -648,13 +648,14 @@ const TypeTags& type_tags<SurfaceKeys>() {
 
 template <>
 const TypeTags& type_tags<GeometryKeys>() {
-  static const TypeTags tags{{"circle",  "ellipse",   "ellipse_arc", "rectangle", "polygon", "region", "nurbs",
-                              "sphere",  "ellipsoid", "torus",       "cylinder",  "cone",    "box",    "revolve",
-                              "extrude", "ruled",     "loft",        "patches",   "tspline", "file",   "fit"},
-                             {"propeller", "hull"},
-                             "",
-                             "",
-                             {{"skin", "loft"}}};
+  static const TypeTags tags{
+      {"circle",    "ellipse", "ellipse_arc", "rectangle", "polygon", "region",  "nurbs",   "sphere",
+       "ellipsoid", "torus",   "cylinder",    "cone",      "box",     "revolve", "extrude", "ruled",
+       "loft",      "patches", "tspline",     "propeller", "file",    "fit"},
+      {"hull"},
+      "",
+      "",
+      {{"skin", "loft"}}};
   return tags;
 }
 

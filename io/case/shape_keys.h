@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "geometry/propeller/series.h"
 #include "geometry/tspline/refinement.h"
 #include "io/cad/read_cad.h"
 #include "io/case/fit_keys.h"
@@ -236,6 +237,25 @@ struct TSplineKeys : SolidKeys {
   OneOrMany<RefineKeys> refine;
 };
 
+/// A screw of a systematic series.
+struct PropellerKeys : SolidKeys {
+  geometry::BladeSeries series = geometry::BladeSeries::kaplan;
+  double diameter = 0.0;
+  int blades = 0;
+  double area_ratio = 0.0;
+  /// One number, or rows of r / R and the value.
+  NumberArray pitch_ratio;
+  /// Degrees, or rows of r / R and a length.
+  NumberArray rake;
+  /// Degrees at the tip, or rows of r / R and degrees.
+  NumberArray skew;
+  bool has_reduced_root_pitch = false;
+  /// 0: no hub.
+  double hub_ratio = 0.2;
+  std::optional<Eigen::Vector2d> hub_ends;
+  geometry::Hand hand = geometry::Hand::right;
+};
+
 using SurfaceKeys =
     std::variant<NurbsPatchKeys, QuadrilateralKeys, DiscKeys, RevolveKeys, ExtrudeKeys, RuledKeys, LoftKeys, SphereKeys,
                  EllipsoidKeys, TorusKeys, CylinderKeys, ConeKeys, BoxKeys, TSplineKeys>;
@@ -268,6 +288,6 @@ struct FileKeys : SolidKeys {
 using GeometryKeys =
     std::variant<CircleKeys, EllipseKeys, EllipseArcKeys, RectangleKeys, PolygonKeys, RegionKeys, NurbsKeys, SphereKeys,
                  EllipsoidKeys, TorusKeys, CylinderKeys, ConeKeys, BoxKeys, RevolveKeys, ExtrudeKeys, RuledKeys,
-                 LoftKeys, PatchesKeys, TSplineKeys, FileKeys, FitKeys>;
+                 LoftKeys, PatchesKeys, TSplineKeys, PropellerKeys, FileKeys, FitKeys>;
 
 }  // namespace isorim::io
