@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -14,6 +15,7 @@
 #include "geometry/errors.h"
 #include "io/analysis/boundary_field.h"
 #include "io/case/analysis_checks.h"
+#include "solver/bem/bodies.h"
 #include "solver/bem/rigid_motion.h"
 
 namespace isorim::io {
@@ -161,9 +163,11 @@ struct FreePart {
   std::vector<solver::RigidMotion<Dim>> motions;
   Eigen::VectorXd coefficients;
 
-  Eigen::VectorXd operator()(const geometry::Point<Dim>& point, Eigen::Index components) const {
+  /// At a point of a body.
+  Eigen::VectorXd operator()(const geometry::Point<Dim>& point, std::int32_t body, Eigen::Index components) const {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(components);
     for (std::size_t m = 0; m < motions.size(); ++m) {
+      if (!motions[m].moves(body)) continue;
       sum += coefficients[static_cast<Eigen::Index>(m)] * motions[m](point).head(components);
     }
     return sum;
@@ -179,7 +183,8 @@ class ErrorMeter {
         rules_(sampling_rules(setting.space)),
         sampler_(setting.space, solution, rules_),
         value_(exact_value<Dim>(file)),
-        flux_(exact_flux<Dim>(file)) {
+        flux_(exact_flux<Dim>(file)),
+        body_at_(setting.space) {
     if (value_) fit_free_part();
   }
 
@@ -189,8 +194,8 @@ class ErrorMeter {
     for (int e = 0; e < element_count(); ++e) {
       const BoundarySample<Dim>& sample = sampler_.sample(e);
       const NodeMatrices<Dim> at(sample.nodes);
-      if (value_) add_sample(sample, at, sample.value - value_(at.points, at.normals), true, value);
-      if (flux_) add_sample(sample, at, sample.flux - flux_(at.points, at.normals), false, flux);
+      if (value_) add_sample(e, sample, at, sample.value - value_(at.points, at.normals), true, value);
+      if (flux_) add_sample(e, sample, at, sample.flux - flux_(at.points, at.normals), false, flux);
     }
     if (value_) {
       errors.emplace_back("boundary_l2", value.relative_l2());
@@ -210,7 +215,7 @@ class ErrorMeter {
       errors.emplace_back(prefix + "_max", largest(sets, value_, [&](const FieldSamples& set) {
                             Eigen::MatrixXd value = set.value;
                             for (Eigen::Index i = 0; i < value.cols(); ++i) {
-                              value.col(i) -= free_(set.points.col(i), value.rows());
+                              value.col(i) -= free_(set.points.col(i), body_at_(set.points.col(i)), value.rows());
                             }
                             return value;
                           }));
@@ -235,12 +240,12 @@ class ErrorMeter {
  private:
   int element_count() const { return static_cast<int>(setting_.space.table.elements.size()); }
 
-  void add_sample(const BoundarySample<Dim>& sample, const NodeMatrices<Dim>& at, const Eigen::MatrixXd& error,
+  void add_sample(int e, const BoundarySample<Dim>& sample, const NodeMatrices<Dim>& at, const Eigen::MatrixXd& error,
                   bool of_value, Norms& norms) const {
     const Eigen::MatrixXd& found = of_value ? sample.value : sample.flux;
     for (Eigen::Index i = 0; i < error.cols(); ++i) {
       Eigen::VectorXd rest = error.col(i);
-      if (of_value) rest -= free_(at.points.col(i), rest.size());
+      if (of_value) rest -= free_(at.points.col(i), setting_.space.body_of(e), rest.size());
       norms.add(rest.norm(), (found.col(i) - error.col(i)).norm(), sample.nodes.weight[std::size_t(i)]);
     }
   }
@@ -257,9 +262,10 @@ class ErrorMeter {
       const NodeMatrices<Dim> at(sample.nodes);
       const Eigen::MatrixXd error = sample.value - value_(at.points, at.normals);
       for (Eigen::Index i = 0; i < error.cols(); ++i) {
-        Eigen::MatrixXd motions(error.rows(), count);
+        Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(error.rows(), count);
         for (Eigen::Index m = 0; m < count; ++m) {
-          motions.col(m) = free_.motions[std::size_t(m)](at.points.col(i)).head(error.rows());
+          const solver::RigidMotion<Dim>& motion = free_.motions[std::size_t(m)];
+          if (motion.moves(setting_.space.body_of(e))) motions.col(m) = motion(at.points.col(i)).head(error.rows());
         }
         const double weight = sample.nodes.weight[std::size_t(i)];
         gram += weight * motions.transpose() * motions;
@@ -305,6 +311,7 @@ class ErrorMeter {
   Exact<Dim> value_;
   Exact<Dim> flux_;
   FreePart<Dim> free_;
+  solver::BodyLocator<Dim> body_at_;
 };
 
 }  // namespace

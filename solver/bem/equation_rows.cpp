@@ -182,6 +182,7 @@ void RowIntegrator<Dim>::set_sum_factors(int element, const View& nodes,
       }
     }
     for (std::size_t m = 0; m < modes.size(); ++m) {
+      if (!modes[m].moves(assembler_->space().body_of(element))) continue;
       double* of_mode = of_single + (m + 1) * n;
       for (std::size_t q = 0; q < n; ++q)
         of_mode[q] = -s * share_[q] * modes[m](node_position(nodes, q))[static_cast<Index>(j)];

@@ -13,6 +13,7 @@
 #include "geometry/bezier/element_jet.h"
 #include "geometry/bezier/subdivision.h"
 #include "geometry/errors.h"
+#include "solver/bem/bodies.h"
 #include "solver/bem/extracted_space.h"
 #include "solver/bem/hierarchical_space.h"
 #include "solver/bem/patch_space.h"
@@ -400,6 +401,16 @@ void append(FieldSpace<Dim>& space, const PatchSpace<Dim>& patch) {
   }
 }
 
+template <int Dim>
+void set_bodies(const OrientedBoundary<Dim>& oriented, const ElementTable<Dim>& table, FieldSpace<Dim>& space) {
+  space.body_of_patch = bodies_of_patches(oriented.topology, table);
+  for (std::size_t i = space.body_of_patch.size(); i-- > 0;) {
+    const auto body = static_cast<std::size_t>(space.body_of_patch[i]);
+    if (space.bodies.size() <= body) space.bodies.resize(body + 1);
+    space.bodies[body] = oriented.boundary.patches[i].name;
+  }
+}
+
 }  // namespace
 
 namespace {
@@ -463,6 +474,7 @@ FieldSpace<Dim> field_space(const OrientedBoundary<Dim>& oriented, const Discret
     }
     first += count;
   }
+  set_bodies(oriented, table, space);
   return space;
 }
 

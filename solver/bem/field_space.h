@@ -82,9 +82,17 @@ struct FieldSpace {
   std::vector<CollocationPoint<Dim>> points;
   /// Of each element, where its patch can be refined locally; level -1 elsewhere.
   std::vector<GridCell<Dim>> cells;
+  /// Of each patch the connected body that it bounds (bodies.h), and of each body the name of a patch; empty: one body.
+  std::vector<std::int32_t> body_of_patch;
+  std::vector<std::string> bodies;
   /// Of each element, what DiscretisationOptions::group says of the one of level 0 that it is a part of.
   std::vector<int> groups;
 
+  std::int32_t body_count() const { return bodies.empty() ? 1 : static_cast<std::int32_t>(bodies.size()); }
+  std::int32_t body_of(int element) const {
+    if (body_of_patch.empty()) return 0;
+    return body_of_patch[static_cast<std::size_t>(table.elements[static_cast<std::size_t>(element)].patch)];
+  }
   int function_count() const { return static_cast<int>(points.size()); }
   std::span<const std::int32_t> functions_of(int element) const {
     const FieldElement<Dim>& field = elements[static_cast<std::size_t>(element)];

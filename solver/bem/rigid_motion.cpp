@@ -65,13 +65,27 @@ std::string place_text(const geometry::Vector<Dim>& v) {
 
 }  // namespace
 
+namespace {
+
 template <int Dim>
-std::vector<RigidMotion<Dim>> free_motions(const Problem<Dim>& problem, const FieldSpace<Dim>& space) {
+geometry::BoundingBox<Dim> box_of(const FieldSpace<Dim>& space, std::int32_t body) {
+  geometry::ElementTable<Dim> part{{}, space.table.nets, space.table.regions};
+  for (int e = 0; e < static_cast<int>(space.table.elements.size()); ++e)
+    if (body < 0 || space.body_of(e) == body)
+      part.elements.push_back(space.table.elements[static_cast<std::size_t>(e)]);
+  return geometry::bounding_box(part);
+}
+
+/// Of one body, or of all as one.
+template <int Dim>
+void append_free_motions(const Problem<Dim>& problem, const FieldSpace<Dim>& space, std::int32_t body,
+                         std::vector<RigidMotion<Dim>>& result) {
   const int components = component_count(problem.equation);
-  const geometry::BoundingBox<Dim> box = geometry::bounding_box(space.table);
+  const geometry::BoundingBox<Dim> box = box_of(space, body);
   const auto motions = all_motions<Dim>(components, !problem.exterior, box.middle(), box.diagonal());
   std::vector<Eigen::VectorXd> rows;
   for (const CollocationPoint<Dim>& point : space.points) {
+    if (body >= 0 && space.body_of(point.element) != body) continue;
     const auto index = static_cast<std::size_t>(problem.condition_of[static_cast<std::size_t>(point.element)]);
     const Condition<Dim>& condition = problem.conditions[index];
     for (int c = 0; c < components; ++c) {
@@ -83,8 +97,22 @@ std::vector<RigidMotion<Dim>> free_motions(const Problem<Dim>& problem, const Fi
     }
   }
   const Eigen::MatrixXd free = null_space(rows, static_cast<Eigen::Index>(motions.size()));
+  for (Eigen::Index k = 0; k < free.cols(); ++k) {
+    result.push_back(combine<Dim>(motions, free.col(k)));
+    result.back().body = body;
+  }
+}
+
+}  // namespace
+
+template <int Dim>
+std::vector<RigidMotion<Dim>> free_motions(const Problem<Dim>& problem, const FieldSpace<Dim>& space) {
   std::vector<RigidMotion<Dim>> result;
-  for (Eigen::Index k = 0; k < free.cols(); ++k) result.push_back(combine<Dim>(motions, free.col(k)));
+  if (problem.exterior || space.body_count() == 1) {
+    append_free_motions<Dim>(problem, space, -1, result);
+    return result;
+  }
+  for (std::int32_t body = 0; body < space.body_count(); ++body) append_free_motions<Dim>(problem, space, body, result);
   return result;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,15 +19,18 @@ struct RigidMotion {
   geometry::Vector<Dim> translation = geometry::Vector<Dim>::Zero();
   Eigen::Matrix<double, Dim, Dim> spin = Eigen::Matrix<double, Dim, Dim>::Zero();
   geometry::Point<Dim> centre = geometry::Point<Dim>::Zero();
+  /// The body that moves (FieldSpace::body_of()); -1: all of them as one.
+  std::int32_t body = -1;
 
+  bool moves(std::int32_t other) const { return body < 0 || body == other; }
   geometry::Vector<Dim> operator()(const geometry::Point<Dim>& y) const { return translation + spin * (y - centre); }
 };
 
-/// The motions that the conditions leave free: constants for a potential, rigid motions for a displacement (only
-/// translations if the domain is unbounded, where turning is not bounded). Orthonormal in a sense that makes all of
-/// them of the size of one over the boundary. A component that is prescribed, or tied by Robin's condition, anywhere
-/// takes away what moves there. Found from the singular values of the constrained components of all motions at the
-/// collocation points; those below 1e-8 of the largest are zero.
+/// The motions that the conditions leave free, body by body: constants for a potential, rigid motions for a
+/// displacement (only translations of all bodies together if the domain is unbounded: it is connected, and turning is
+/// not bounded). Orthonormal in a sense that makes all of them of the size of one over the boundary. A component that
+/// is prescribed, or tied by Robin's condition, anywhere takes away what moves there. Found from the singular values of
+/// the constrained components of all motions at the collocation points; those below 1e-8 of the largest are zero.
 template <int Dim>
 std::vector<RigidMotion<Dim>> free_motions(const Problem<Dim>& problem, const FieldSpace<Dim>& space);
 

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "geometry/errors.h"
 #include "quadrature/rim.h"
@@ -35,12 +37,15 @@ quadrature::NodeView<Dim> smooth_rule(const quadrature::TargetRules<Dim>& rules,
 template <int Dim>
 using PointColumns = Eigen::Ref<const geometry::Points<Dim>>;
 
-/// The elements under one condition.
+/// The elements of what a motion moves: all, or those under one condition.
 template <int Dim>
-ElementTable<Dim> part_under(const Problem<Dim>& problem, const ElementTable<Dim>& table, std::size_t condition) {
+ElementTable<Dim> moved_part(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const RigidMotion<Dim>& motion,
+                             std::optional<std::size_t> condition = {}) {
+  const ElementTable<Dim>& table = space.table;
   ElementTable<Dim> part{{}, table.nets, table.regions};
   for (std::size_t e = 0; e < table.elements.size(); ++e) {
-    if (static_cast<std::size_t>(problem.condition_of[e]) == condition) part.elements.push_back(table.elements[e]);
+    if (condition && static_cast<std::size_t>(problem.condition_of[e]) != *condition) continue;
+    if (motion.moves(space.body_of(static_cast<int>(e)))) part.elements.push_back(table.elements[e]);
   }
   return part;
 }
@@ -76,12 +81,12 @@ quadrature::Options sum_options(double tolerance, int threads) {
 
 /// The given fluxes' work on a motion.
 template <int Dim>
-double boundary_work(const Problem<Dim>& problem, const ElementTable<Dim>& table, const RigidMotion<Dim>& motion,
+double boundary_work(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const RigidMotion<Dim>& motion,
                      double (*shape)(double), const quadrature::Options& options) {
   double sum = 0.0;
   for (std::size_t k = 0; k < problem.conditions.size(); ++k) {
     const Condition<Dim>& condition = problem.conditions[k];
-    const ElementTable<Dim> part = part_under(problem, table, k);
+    const ElementTable<Dim> part = moved_part(problem, space, motion, k);
     if (part.elements.empty()) continue;
     for (std::size_t c = 0; c < condition.components.size(); ++c) {
       const ComponentCondition<Dim>& component = condition.components[c];
@@ -95,9 +100,10 @@ double boundary_work(const Problem<Dim>& problem, const ElementTable<Dim>& table
 }
 
 template <int Dim>
-double domain_work(const Problem<Dim>& problem, const ElementTable<Dim>& table, const RigidMotion<Dim>& motion,
+double domain_work(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const RigidMotion<Dim>& motion,
                    double (*shape)(double), const quadrature::Options& options) {
   double sum = 0.0;
+  const ElementTable<Dim> table = moved_part(problem, space, motion);
   for (const auto& load : problem.loads) {
     if (load->is_thermal()) continue;
     // One component at a time: their sum may vanish at every point (a radial load and a rotation), and then nothing
@@ -112,28 +118,40 @@ double domain_work(const Problem<Dim>& problem, const ElementTable<Dim>& table, 
   return sum;
 }
 
+/// "the body", or "the body of patch 'x'" where there are several.
 template <int Dim>
-void require_balance(const Problem<Dim>& problem, const ElementTable<Dim>& table, const RigidMotion<Dim>& motion,
+std::string body_name(const FieldSpace<Dim>& space, std::int32_t body) {
+  if (body < 0) return "the body";
+  return fmt::format("the body of patch '{}'", space.bodies[static_cast<std::size_t>(body)]);
+}
+
+template <int Dim>
+std::string on_body(const FieldSpace<Dim>& space, std::int32_t body) {
+  return body < 0 ? "" : " on " + body_name(space, body);
+}
+
+template <int Dim>
+void require_balance(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const RigidMotion<Dim>& motion,
                      int threads) {
   const quadrature::Options fine = sum_options(1e-10, threads);
   const quadrature::Options coarse = sum_options(1e-3, threads);
   const double sum =
-      boundary_work(problem, table, motion, itself, fine) + domain_work(problem, table, motion, itself, fine);
+      boundary_work(problem, space, motion, itself, fine) + domain_work(problem, space, motion, itself, fine);
   const double gross =
-      boundary_work(problem, table, motion, magnitude, coarse) + domain_work(problem, table, motion, magnitude, coarse);
+      boundary_work(problem, space, motion, magnitude, coarse) + domain_work(problem, space, motion, magnitude, coarse);
   if (std::abs(sum) <= balance_tolerance * gross) return;
   const int components = component_count(problem.equation);
   if (components == 1) {
     throw InputError(
-        fmt::format("only fluxes are prescribed, and with the sources they sum to {:.6g} ({:.6g} in absolute value) "
+        fmt::format("only fluxes are prescribed{}, and with the sources they sum to {:.6g} ({:.6g} in absolute value) "
                     "where a solution "
-                    "needs 0; balance them, or prescribe a value (or robin) on a part of the boundary",
-                    sum, gross));
+                    "needs 0; balance them, or prescribe a value (or robin) on a part of {} boundary",
+                    on_body(space, motion.body), sum, gross, motion.body < 0 ? "the" : "its"));
   }
   throw InputError(fmt::format(
-      "nothing holds the body against {}, and the loads along it sum to {:.6g} ({:.6g} in absolute value) where a "
+      "nothing holds {} against {}, and the loads along it sum to {:.6g} ({:.6g} in absolute value) where a "
       "solution needs 0; balance them, or prescribe a displacement (or robin) that holds the body",
-      describe(motion, components), sum, gross));
+      body_name(space, motion.body), describe(motion, components), sum, gross));
 }
 
 /// What a row of side conditions takes of one element: values of a scalar function at its nodes, for each component.
@@ -167,12 +185,13 @@ void add_element_row(RowSource<Dim>& source, int element, int component, int com
   for (std::size_t a = 0; a < functions.size(); ++a) row[functions[a] * components + component] += source.sums[a];
 }
 
-/// int u . motion dS of the unknown components of u, divided by the boundary's measure.
+/// int u . motion dS of the unknown components of u, divided by the measure of what moves.
 template <int Dim>
 void fill_mean_row(const Problem<Dim>& problem, RowSource<Dim>& source, const RigidMotion<Dim>& motion, double measure,
                    Eigen::Ref<Eigen::RowVectorXd> row) {
   const int components = component_count(problem.equation);
   for (std::size_t e = 0; e < problem.condition_of.size(); ++e) {
+    if (!motion.moves(source.space.body_of(static_cast<int>(e)))) continue;
     const Condition<Dim>& condition = problem.conditions[static_cast<std::size_t>(problem.condition_of[e])];
     for (int c = 0; c < components; ++c) {
       if (condition.components[static_cast<std::size_t>(c)].kind == ConditionKind::value) continue;
@@ -215,9 +234,10 @@ void fill_flux_row(const Problem<Dim>& problem, RowSource<Dim>& source, const Ri
 }
 
 template <int Dim>
-double measure_of(const FieldSpace<Dim>& space, const quadrature::TargetRules<Dim>& rules) {
+double measure_of(const FieldSpace<Dim>& space, const quadrature::TargetRules<Dim>& rules, std::int32_t body = -1) {
   double sum = 0.0;
   for (std::size_t e = 0; e < space.table.elements.size(); ++e) {
+    if (body >= 0 && space.body_of(static_cast<int>(e)) != body) continue;
     for (const double weight : smooth_rule(rules, static_cast<int>(e)).weight) sum += weight;
   }
   return sum;
@@ -240,16 +260,31 @@ std::vector<geometry::Vector<Dim>> held_directions(const std::vector<RigidMotion
   return {held};
 }
 
-std::string fixed_message(const std::vector<std::string>& names, int components) {
-  if (components == 1)
-    return "only fluxes are prescribed: the potential is determined up to a constant; its mean over the boundary was "
-           "set to 0";
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+template <int Dim>
+std::string fixed_message(const FieldSpace<Dim>& space, std::int32_t body, const std::vector<std::string>& names,
+                          int components) {
+  const std::string boundary = body < 0 ? "the boundary" : "its boundary";
+  if (components == 1) {
+    return fmt::format(
+        "only fluxes are prescribed{}: the potential is determined up to a constant; its mean over {} "
+        "was set to 0",
+        on_body(space, body), boundary);
+  }
   return fmt::format(
-      "the conditions leave the body free ({}); the mean displacement along these motions over the boundary was set to "
-      "0",
-      list);
+      "the conditions leave {} free ({}); the mean displacement along these motions over {} was set to 0",
+      body_name(space, body), fmt::join(names, ", "), boundary);
+}
+
+/// One for each body that is free; the motions of a body stand together.
+template <int Dim>
+void append_messages(const FieldSpace<Dim>& space, const std::vector<RigidMotion<Dim>>& motions, int components,
+                     std::vector<std::string>& messages) {
+  for (std::size_t k = 0; k < motions.size();) {
+    const std::int32_t body = motions[k].body;
+    std::vector<std::string> names;
+    for (; k < motions.size() && motions[k].body == body; ++k) names.push_back(describe(motions[k], components));
+    messages.push_back(fixed_message(space, body, names, components));
+  }
 }
 
 template <int Dim>
@@ -262,17 +297,14 @@ SideConditions<Dim> fix_motions(const Problem<Dim>& problem, const FieldSpace<Di
   result.rows.setZero(count, components * space.function_count());
   result.right.setZero(count);
   RowSource<Dim> source{space, rules, {}, {}, {}, {}};
-  const double measure = measure_of(space, rules);
-  std::vector<std::string> names;
   for (Eigen::Index k = 0; k < count; ++k) {
     const RigidMotion<Dim>& motion = motions[static_cast<std::size_t>(k)];
-    require_balance(problem, space.table, motion, threads);
+    require_balance(problem, space, motion, threads);
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(result.rows.cols());
-    fill_mean_row(problem, source, motion, measure, row);
+    fill_mean_row(problem, source, motion, measure_of(space, rules, motion.body), row);
     result.rows.row(k) = row;
-    names.push_back(describe(motion, components));
   }
-  if (count > 0) result.messages.push_back(fixed_message(names, components));
+  append_messages(space, motions, components, result.messages);
   result.flux_modes = std::move(motions);
   return result;
 }
@@ -281,7 +313,7 @@ SideConditions<2> fix_constants(const Problem<2>& problem, const FieldSpace<2>& 
                                 const quadrature::TargetRules<2>& rules, const std::vector<RigidMotion<2>>& free,
                                 double flux_scale, int threads) {
   const int components = component_count(problem.equation);
-  for (const RigidMotion<2>& motion : free) require_balance(problem, space.table, motion, threads);
+  for (const RigidMotion<2>& motion : free) require_balance(problem, space, motion, threads);
   SideConditions<2> result;
   result.constants = held_directions(free, components);
   const auto count = static_cast<Eigen::Index>(result.constants.size());

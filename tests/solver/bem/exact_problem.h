@@ -197,7 +197,10 @@ ExactField<Dim> without_motions(const ExactField<Dim>& field, const Problem<Dim>
       geometry::Point<Dim> y;
       for (int d = 0; d < Dim; ++d) y[d] = nodes.position[static_cast<std::size_t>(d)][q];
       Eigen::MatrixXd moved(components, count);
-      for (Eigen::Index k = 0; k < count; ++k) moved.col(k) = motions[static_cast<std::size_t>(k)](y).head(components);
+      moved.setZero();
+      for (Eigen::Index k = 0; k < count; ++k)
+        if (motions[static_cast<std::size_t>(k)].moves(space.body_of(e)))
+          moved.col(k) = motions[static_cast<std::size_t>(k)](y).head(components);
       gram += nodes.weight[q] * moved.transpose() * moved;
       work += nodes.weight[q] * moved.transpose() * field.value(y);
     }
