@@ -399,6 +399,27 @@ std::vector<Patch<3>> cylinder_caps(const CylinderTool& tool, const std::vector<
   return side_caps(side, curves, tool.keep, tool.radius, size, options);
 }
 
+std::vector<TrimLoop> loops_beside(const TrimmedSurface& cap, const NurbsSurface<3>& side, double size) {
+  const Interval turn = side.knots_u().domain();
+  const auto lies_on_seam = [&](const NurbsCurve<2>& curve) {
+    const Eigen::ArrayXd u = curve.control_points().row(0).transpose().array();
+    return (u - turn.first).abs().maxCoeff() <= border_tolerance ||
+           (u - turn.last).abs().maxCoeff() <= border_tolerance;
+  };
+  std::vector<NurbsCurve<2>> curves;
+  for (const TrimLoop& loop : cap.loops()) {
+    for (const NurbsCurve<2>& curve : loop.curves)
+      if (!lies_on_seam(curve)) curves.push_back(reverse(curve));
+  }
+  const Point3 first = evaluate(side, Point2(turn.first, side.knots_v().domain().first));
+  const Point3 opposite = evaluate(side, Point2(turn.middle(), side.knots_v().domain().first));
+  const Vector2 scale(1.0 / (pi * (opposite - first).norm()), 1.0);
+  const Border border = rectangle_border(side);
+  std::vector<TrimLoop> loops = close_along(border, curves, scale, ClipOptions{}.gap_tolerance * size, 1e-12 * size);
+  if (needs_border(loops)) loops.push_back(whole(border));
+  return loops;
+}
+
 std::vector<Patch<3>> cone_caps(const ConeTool& tool, const std::vector<CapEdge>& edges, double size,
                                 const ClipOptions& options) {
   if (edges.empty()) return {};

@@ -8,7 +8,7 @@
 #include "geometry/nurbs/curve.h"
 #include "geometry/nurbs/surface.h"
 
-/// For clip.cpp: the parts of a tool's surface that close what it has cut.
+/// The parts of a tool's surface that close what it has cut; for clip() and for what joins solids along such cuts.
 namespace isorim::geometry {
 
 /// An edge of a cap: an edge of a face along the tool, over [0, 1], with the cap on the left of its direction as seen
@@ -37,6 +37,9 @@ std::vector<Patch<3>> sphere_caps(const SphereTool& tool, const std::vector<CapE
                                   const ClipOptions& options, const PointTest& is_inside);
 std::vector<Patch<3>> cylinder_caps(const CylinderTool& tool, const std::vector<CapEdge>& edges, double size,
                                     const ClipOptions& options);
+/// What a cap on a cylinder leaves of it: the loops of the rest of `side`, the cap's surface over larger heights.
+/// `size` as above.
+std::vector<TrimLoop> loops_beside(const TrimmedSurface& cap, const NurbsSurface<3>& side, double size);
 std::vector<Patch<3>> cone_caps(const ConeTool& tool, const std::vector<CapEdge>& edges, double size,
                                 const ClipOptions& options);
 

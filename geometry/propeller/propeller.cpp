@@ -13,6 +13,7 @@
 
 #include "geometry/errors.h"
 #include "geometry/intersection/clip.h"
+#include "geometry/intersection/tool_caps.h"
 #include "geometry/shapes/checks.h"
 #include "geometry/shapes/sweeps.h"
 #include "geometry/shapes/transforms.h"
@@ -83,13 +84,6 @@ Boundary<3> all_blades(const Boundary<3>& blade, int count) {
   return result;
 }
 
-TrimLoop reversed(const TrimLoop& loop) {
-  TrimLoop result;
-  for (auto curve = loop.curves.rbegin(); curve != loop.curves.rend(); ++curve)
-    result.curves.push_back(reverse(*curve));
-  return result;
-}
-
 /// The hub's side and ends, given the part of the side that the blades cover.
 std::vector<Patch<3>> hub_patches(const TrimmedSurface& covered, const Hub& hub) {
   const Interval blades = covered.surface().knots_v().domain();
@@ -101,8 +95,8 @@ std::vector<Patch<3>> hub_patches(const TrimmedSurface& covered, const Hub& hub)
         ends.first, ends.last, blades.first, blades.last));
   }
   const NurbsSurface<3> side = extend(covered.surface(), Direction::v, ends);
-  std::vector<TrimLoop> loops{domain_loop(side)};
-  for (const TrimLoop& loop : covered.loops()) loops.push_back(reversed(loop));
+  const double size = 2.0 * hub.radius + ends.length();
+  std::vector<TrimLoop> loops = loops_beside(covered, side, size);
   const std::array<NurbsCurve<3>, 4> edges = boundary_curves(side);
   return {{"hub", TrimmedSurface(side, std::move(loops))},
           {"hub_aft", fan<3>(edges[0], Point3(ends.first, 0.0, 0.0))},

@@ -57,6 +57,24 @@ TEST(Propeller, JoinsBladesAndHub) {
   }
 }
 
+// The roots of five wide blades cover every angle round the hub, so blades lie across the seam of its surface.
+TEST(Propeller, JoinsBladesThatLieAcrossTheSeamOfTheHub) {
+  SeriesBlade blade;
+  blade.series = BladeSeries::wageningen_b;
+  blade.diameter = 500.0;
+  blade.blades = 5;
+  blade.area_ratio = 0.75;
+  blade.pitch_ratio = RadialLaw("pitch ratio", {0.2, 0.6, 1.0}, {0.85, 1.0, 1.0});
+  Propeller screw;
+  screw.sections = series_sections(blade);
+  screw.blades = 5;
+  screw.hub = Hub{45.0};
+  const Boundary<3> joined = propeller(screw);
+  ASSERT_EQ(joined.patches.size(), 8u);
+  EXPECT_EQ(joined.patches[5].name, "hub");
+  EXPECT_GE(trim_loops(joined.patches[5].shape).size(), 1u);
+}
+
 TEST(Propeller, TakesHubsOfOtherSizesAndBothHands) {
   for (const double radius : {42.0, 50.0, 75.0, 130.0}) {
     Propeller screw = reference(BladeSeries::kaplan);
