@@ -28,6 +28,7 @@ double value_of(const MeasuredSection& measured, const std::string& quantity) {
 
 Quantity quantity_of(const SectionFamily& family, const std::string& name) {
   Quantity quantity{family.name + "." + name, {{}, static_cast<int>(family.sections.size()), 1}, {}, {}, {}, ""};
+  quantity.is_sequence = true;
   for (const MeasuredSection& measured : family.sections) {
     if (!measured.section) {
       quantity.value.values.clear();

@@ -42,6 +42,8 @@ struct Quantity {
   std::optional<quadrature::Status> status;
   /// Why the quantity was refused.
   std::string reason;
+  /// Of several things, one entry each: told apart by numbers, not by axes.
+  bool is_sequence = false;
 
   double largest_error() const;
 };

@@ -44,9 +44,7 @@ std::string entry_name(const Quantity& quantity, int row, int column) {
   if (quantity.name == "principal_moments") return fmt::format("{} {}", quantity.name, row + 1);
   if (quantity.name == "principal_axes")
     return fmt::format("{} {}{}", quantity.name, axes[std::size_t(row)], column + 1);
-  // "NAME.area" of a family of planes is no vector.
-  const bool by_number =
-      quantity.value.rows > 3 || quantity.value.columns > 3 || quantity.name.find('.') != std::string::npos;
+  const bool by_number = quantity.is_sequence || quantity.value.rows > 3 || quantity.value.columns > 3;
   if (quantity.value.columns == 1) {
     return by_number ? fmt::format("{} {}", quantity.name, row + 1)
                      : fmt::format("{} {}", quantity.name, axes[std::size_t(row)]);

@@ -401,6 +401,34 @@ const std::vector<BadCase> quantities{
      {"convergence.points: found from = 3 above to = 1"}},
 };
 
+std::string propeller(const std::string& more) {
+  return "[geometry]\ntype = 'propeller'\nseries = 'kaplan'\ndiameter = 500\narea_ratio = 0.6\n" + more + "\n";
+}
+
+const std::vector<BadCase> propellers{
+    {"UnknownSeries",
+     "[geometry]\ntype = 'propeller'\nseries = 'kaplann'\n",
+     {"geometry.series: found the text \"kaplann\"", "(did you mean \"kaplan\"?)"}},
+    {"NoPitch", propeller("blades = 4"), {"the key \"pitch_ratio\"", "is missing"}},
+    {"TooManyBlades", propeller("blades = 9\npitch_ratio = 1"), {"case.toml:6: geometry.blades: found 9"}},
+    {"PitchAsAList",
+     propeller("blades = 4\npitch_ratio = [0.8, 0.9]"),
+     {"case.toml:7: geometry.pitch_ratio: found a list; expected one number, or a list of rows [r/R, value]"}},
+    {"PitchAtFallingRadii",
+     propeller("blades = 4\npitch_ratio = [[0.5, 0.8], [0.2, 0.9]]"),
+     {"case.toml:7: geometry.pitch_ratio: pitch_ratio: r/R is 0.2 in row 2 after 0.5; the radii have to rise"}},
+    {"HubTooShort",
+     propeller("blades = 4\npitch_ratio = 0.9\nhub_ends = [-10, 70]"),
+     {"case.toml:1: geometry: propeller hub: it runs from X = -10 to 70; the blades on it need -"}},
+    {"HubTooSmall",
+     propeller("blades = 4\npitch_ratio = 0.9\nhub_ratio = 0.05"),
+     {"geometry: propeller: the blades start at a radius of", "too far outside the hub of radius 12.5"}},
+    {"ReducedPitchOfAnotherSeries",
+     propeller("blades = 4\npitch_ratio = 0.9\nreduced_root_pitch = true"),
+     {"the reduced root pitch belongs to Wageningen B screws of four blades"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Propellers, BadInput, ::testing::ValuesIn(propellers), bad_case_name);
 INSTANTIATE_TEST_SUITE_P(Syntax, BadInput, ::testing::ValuesIn(syntax), bad_case_name);
 INSTANTIATE_TEST_SUITE_P(Keys, BadInput, ::testing::ValuesIn(keys), bad_case_name);
 INSTANTIATE_TEST_SUITE_P(Types, BadInput, ::testing::ValuesIn(types), bad_case_name);

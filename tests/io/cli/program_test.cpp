@@ -306,7 +306,7 @@ TEST_F(Program, HelpAndVersion) {
               AllOf(HasSubstr("verify"), HasSubstr("Exit status"), HasSubstr("convert"), Not(HasSubstr("sweep"))));
   EXPECT_THAT(run({"help", "run"}).out, HasSubstr("--set"));
   EXPECT_THAT(run({"help", "case"}).out,
-              AllOf(HasSubstr("properties"), HasSubstr("ellipsoid"), Not(HasSubstr("propeller"))));
+              AllOf(HasSubstr("properties"), HasSubstr("ellipsoid"), Not(HasSubstr("hull"))));
   EXPECT_THAT(run({"help", "case", "torus"}).out, AllOf(HasSubstr("major_radius"), HasSubstr("required")));
   const ProgramResult wrong = run({"help", "case", "tourus"});
   EXPECT_EQ(wrong.status, 2);
