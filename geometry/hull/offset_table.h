@@ -1,0 +1,90 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/vocabulary.h"
+
+/// Tables of offsets: what a hull form is drawn from. Conventions (README.md): x forward, y to port, z up; a hull is
+/// symmetric about y = 0, and only its port half is given.
+namespace isorim::geometry {
+
+/// A line along the hull at which its surface has an edge: a chine, the edge of a deck or of a step.
+struct KnuckleLine {
+  std::string name;
+  /// 2 x stations: half-breadth and height at each station.
+  Points<2> places;
+};
+
+/// A hull by points. All in one unit of length.
+struct OffsetTable {
+  std::string name;
+  std::string source;
+  /// Between perpendiculars, moulded beam, design draught.
+  double length = 0.0;
+  double beam = 0.0;
+  double draught = 0.0;
+  /// x of the after perpendicular; the forward one lies `length` ahead of it.
+  double after_perpendicular = 0.0;
+  /// z from which draughts count.
+  double baseline = 0.0;
+
+  /// x, rising (forward), and how drawings call them.
+  std::vector<double> stations;
+  std::vector<std::string> station_names;
+  /// z, rising.
+  std::vector<double> waterlines;
+  /// waterlines x stations; NaN where a waterline does not reach the station.
+  Eigen::MatrixXd half_breadths;
+  /// 2 x stations, half-breadth and height: where a section begins (half-breadth > 0: the edge of a flat of bottom) and
+  /// ends. A NaN height: the section begins (ends) with its lowest (highest) half-breadth. May be empty.
+  Points<2> keel;
+  Points<2> deck;
+  /// The sections leave the flat of bottom along it, without an edge.
+  bool has_tangent_bottom = false;
+  /// Contours in the centre plane, x and z, from the keel upwards, ahead of (abaft) all stations. May be empty: the
+  /// hull ends with its last station then.
+  Points<2> stem;
+  Points<2> stern;
+  /// Each from the first to the last station, in any order. Where there are contours the line ends on them at
+  /// the contour's point of the same place in the list of knuckles: `stem_knuckles` and `stern_knuckles` hold these
+  /// columns.
+  std::vector<KnuckleLine> knuckles;
+  std::vector<int> stem_knuckles;
+  std::vector<int> stern_knuckles;
+  /// Of the sections up to the design draught over the largest, as published beside the offsets; empty: not known.
+  std::vector<double> area_ratios;
+};
+
+/// Throws GeometryError naming the table and the station or waterline: counts that contradict each other, numbers that
+/// are not finite, lengths that are not positive, stations or waterlines that do not rise, negative half-breadths,
+/// contours that reach the stations.
+void check(const OffsetTable& table);
+
+/// A transverse section of a hull, or its stem or stern contour, as points from the keel to the deck.
+struct HullSection {
+  /// "station 3", "stem", "stern".
+  std::string name;
+  /// 3 x n.
+  Points<3> points;
+  /// Columns: 0, the knuckles in the order in which the section meets them, the last one.
+  std::vector<int> ends;
+  /// For each point which line of the table it lies on: the same number on two sections, the same line; -1: none.
+  std::vector<int> lines;
+  /// Leaves a flat of bottom along it.
+  bool is_level_at_keel = false;
+  /// The stem or stern contour.
+  bool is_contour = false;
+};
+
+/// The sections from aft forward, with the contours where the table has them. Throws GeometryError as check() does, and
+/// for a section of fewer than two points, a knuckle at the height of a waterline with another half-breadth, knuckles
+/// that the sections meet in different orders, and sections between the ends without thickness.
+std::vector<HullSection> hull_sections(const OffsetTable& table);
+
+/// Factors along x (about the after perpendicular), y and z (about the baseline).
+OffsetTable scaled(const OffsetTable& table, const Vector3& factors);
+
+}  // namespace isorim::geometry
