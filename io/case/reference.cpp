@@ -137,6 +137,14 @@ std::string case_topic(const std::string& name) {
   return text;
 }
 
+std::vector<std::string> case_topics() {
+  std::vector<std::string> names;
+  for (const Description* description : distinct_descriptions()) {
+    if (std::find(names.begin(), names.end(), description->name) == names.end()) names.push_back(description->name);
+  }
+  return names;
+}
+
 std::string case_reference_markdown() {
   std::string text =
       "# Case files\n\nA case file is TOML. Unknown keys are errors. Where a real is asked an integer will do; numbers "

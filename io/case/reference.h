@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 /// Help texts and the reference, made from the declarations that the reader uses.
 namespace isorim::io {
@@ -11,6 +12,9 @@ std::string case_overview();
 /// All keys of a section ("properties") or of a type ("sphere", "nurbs", "axis"); of every one if several have the
 /// name. Throws InputError with the nearest name if there is none.
 std::string case_topic(const std::string& name);
+
+/// What case_topic() knows, once each, in the order of case_reference_markdown().
+std::vector<std::string> case_topics();
 
 /// Everything, as Markdown.
 std::string case_reference_markdown();

@@ -13,6 +13,7 @@
 #include "io/case/complaints.h"
 #include "io/case/reference.h"
 #include "io/cli/commands.h"
+#include "io/cli/completion.h"
 #include "io/results/report.h"
 
 namespace isorim::cli {
@@ -23,6 +24,7 @@ constexpr const char* about = "isorim: integrals over what CAD boundaries enclos
 struct HelpArguments {
   std::vector<std::string> topic;
   bool markdown = false;
+  std::string completion;
 };
 
 /// CLI11 keeps references to what it fills.
@@ -94,6 +96,9 @@ void declare(CLI::App& app, Arguments& arguments) {
   CLI::App& help = *app.add_subcommand("help", "Explains a command (help run) or case files (help case [SECTION])");
   help.add_option("TOPIC", arguments.help.topic, "A command; or case, with a section or type")->expected(0, 2);
   help.add_flag("--markdown", arguments.help.markdown, "Prints the reference of case files as Markdown");
+  help.add_option("--completion", arguments.help.completion, "Prints a script that completes command lines: bash, zsh")
+      ->type_name("SHELL")
+      ->check(CLI::IsMember({"bash", "zsh"}));
 }
 
 std::vector<std::string> command_names(const CLI::App& app) {
@@ -125,6 +130,9 @@ int print_help(const HelpArguments& arguments, std::ostream& out) {
   declare(app, unused);
   if (arguments.markdown) {
     out << io::case_reference_markdown();
+  } else if (!arguments.completion.empty()) {
+    const Shell shell = arguments.completion == "bash" ? Shell::bash : Shell::zsh;
+    out << completion_script(app, shell, io::case_topics());
   } else if (arguments.topic.empty()) {
     out << app.help() << "\nExit status: 0 all well; 1 an expectation was missed; 2 bad input or usage; 3 a numerical "
         << "failure.\n";

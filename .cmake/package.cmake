@@ -1,0 +1,28 @@
+# Debian packages by `cpack` in the build folder: `isorim` with the program, its manual and cases, `isorim-dev` with the
+# libraries. What the program depends on is found by dpkg-shlibdeps, what the libraries do is what built them.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME isorim)
+set(CPACK_PACKAGE_CONTACT "The developers of isorim <developers@isorim.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program development)
+
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME isorim)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
+    "Reads the boundary of a shape as CAD describes it (NURBS, trimmed faces, T-splines; IGES, STEP)
+and computes its geometric properties and integrals by the radial integration method, and
+boundary-element solutions on it, without a mesh.")
+
+file(STRINGS ${PROJECT_SOURCE_DIR}/.ci/packages isorim_development_depends REGEX "^build +lib.*-dev$|^build +nlohmann")
+list(TRANSFORM isorim_development_depends REPLACE "^build +" "")
+list(FILTER isorim_development_depends EXCLUDE REGEX "gtest|gmock|cli11")
+list(JOIN isorim_development_depends ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME isorim-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The libraries of isorim with their headers, for find_package(isorim).")
+include(CPack)
