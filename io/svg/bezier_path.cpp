@@ -1,6 +1,9 @@
 #include "io/svg/bezier_path.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -44,12 +47,6 @@ Point2 evaluate(Net net, double t) {
   return cartesian(net, 0);
 }
 
-Point2 evaluate_cubic(const PathSegment& cubic, double t) {
-  const double s = 1.0 - t;
-  return s * s * s * cubic.col(0) + 3.0 * s * s * t * cubic.col(1) + 3.0 * s * t * t * cubic.col(2) +
-         t * t * t * cubic.col(3);
-}
-
 /// The cubic with the segment's ends and end derivatives (Piegl & Tiller, eqs 4.9 and 4.10).
 PathSegment hermite_cubic(const Net& net) {
   const Eigen::Index p = net.cols() - 1;
@@ -66,7 +63,7 @@ bool is_close(const Net& net, const PathSegment& cubic, double tolerance) {
   constexpr int probes = 16;
   for (int k = 0; k < probes; ++k) {
     const double t = (k + 0.5) / probes;
-    if ((evaluate(net, t) - evaluate_cubic(cubic, t)).norm() > tolerance) return false;
+    if ((evaluate(net, t) - evaluate_segment(cubic, t)).norm() > tolerance) return false;
   }
   return true;
 }
@@ -82,11 +79,35 @@ void add_cubics(const Net& net, double tolerance, int halvings, std::vector<Path
   add_cubics(right, tolerance, halvings + 1, segments);
 }
 
+/// The parameters in (0, 1) at which one coordinate, a Bézier polynomial of degree 3 at most, is stationary.
+std::vector<double> stationary_parameters(const Eigen::RowVectorXd& b) {
+  std::vector<double> roots;
+  if (b.size() == 3) {
+    roots = {(b(0) - b(1)) / (b(0) - 2.0 * b(1) + b(2))};
+  } else if (b.size() == 4) {
+    const double a = -b(0) + 3.0 * b(1) - 3.0 * b(2) + b(3);
+    const double half_b = b(0) - 2.0 * b(1) + b(2);
+    const double c = b(1) - b(0);
+    const double root = std::sqrt(std::max(0.0, half_b * half_b - a * c));
+    const double q = -(half_b + std::copysign(root, half_b));
+    roots = {q / a, c / q};
+  }
+  std::erase_if(roots, [](double t) { return !(t > 0.0 && t < 1.0); });
+  return roots;
+}
+
 bool is_drawn_exactly(const Net& net) {
   return net.cols() <= 4 && (net.row(2).array() == net(2, 0)).all();
 }
 
 }  // namespace
+
+Point2 evaluate_segment(PathSegment segment, double t) {
+  for (Eigen::Index k = segment.cols() - 1; k > 0; --k) {
+    for (Eigen::Index i = 0; i < k; ++i) segment.col(i) = (1.0 - t) * segment.col(i) + t * segment.col(i + 1).eval();
+  }
+  return segment.col(0);
+}
 
 std::vector<PathSegment> path_segments(const geometry::NurbsCurve<2>& curve, double tolerance) {
   std::vector<PathSegment> segments;
@@ -101,11 +122,26 @@ std::vector<PathSegment> path_segments(const geometry::NurbsCurve<2>& curve, dou
   return segments;
 }
 
-std::string path_command(const PathSegment& segment) {
+std::vector<PathSegment> path_segments(const Chain& chain, double tolerance) {
+  std::vector<PathSegment> segments;
+  for (const auto& curve : chain) std::ranges::move(path_segments(curve, tolerance), std::back_inserter(segments));
+  return segments;
+}
+
+void add_extent(const PathSegment& segment, Bounds& bounds) {
+  bounds.add(segment.leftCols(1));
+  bounds.add(segment.rightCols(1));
+  for (const Eigen::Index coordinate : {0, 1}) {
+    for (const double t : stationary_parameters(segment.row(coordinate))) bounds.add(evaluate_segment(segment, t));
+  }
+}
+
+std::string path_command(const PathSegment& segment, int decimals) {
   constexpr std::array<std::string_view, 4> letters{"", "L", "Q", "C"};
   std::string command(letters[static_cast<std::size_t>(segment.cols() - 1)]);
   for (Eigen::Index i = 1; i < segment.cols(); ++i) {
-    command += fmt::format("{}{} {}", i == 1 ? "" : " ", number(segment(0, i), 3), number(segment(1, i), 3));
+    command +=
+        fmt::format("{}{} {}", i == 1 ? "" : " ", number(segment(0, i), decimals), number(segment(1, i), decimals));
   }
   return command;
 }

@@ -1,11 +1,29 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "geometry/nurbs/curve.h"
 
 namespace isorim::io::svg {
+
+/// Curves of which each starts where the one before ends; closed if the last ends where the first starts.
+using Chain = std::vector<geometry::NurbsCurve<2>>;
+
+/// The smallest axis-parallel rectangle round what was added; empty (lower > upper) before.
+struct Bounds {
+  geometry::Point2 lower = geometry::Point2::Constant(std::numeric_limits<double>::infinity());
+  geometry::Point2 upper = -lower;
+
+  /// 2 x n, n > 0.
+  void add(const geometry::Points<2>& points) {
+    lower = lower.cwiseMin(points.rowwise().minCoeff());
+    upper = upper.cwiseMax(points.rowwise().maxCoeff());
+  }
+  bool is_empty() const { return !(lower.array() <= upper.array()).all(); }
+  double diagonal() const { return (upper - lower).norm(); }
+};
 
 /// A polynomial Bézier segment of degree 1, 2 or 3: 2 x (degree + 1) points.
 using PathSegment = geometry::Points<2>;
@@ -16,7 +34,16 @@ using PathSegment = geometry::Points<2>;
 /// compared).
 std::vector<PathSegment> path_segments(const geometry::NurbsCurve<2>& curve, double tolerance);
 
-/// "L x y", "Q ..." or "C ..." for a segment in pixels, from its second point on.
-std::string path_command(const PathSegment& segment);
+/// Those of all curves of a chain.
+std::vector<PathSegment> path_segments(const Chain& chain, double tolerance);
+
+/// The segment's point at t in [0, 1].
+geometry::Point2 evaluate_segment(PathSegment segment, double t);
+
+/// Adds the segment's own extent, not that of its control points.
+void add_extent(const PathSegment& segment, Bounds& bounds);
+
+/// "L x y", "Q ..." or "C ..." for a segment from its second point on, with so many decimals.
+std::string path_command(const PathSegment& segment, int decimals = 3);
 
 }  // namespace isorim::io::svg

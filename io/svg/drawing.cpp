@@ -15,7 +15,6 @@ namespace isorim::io::svg {
 
 namespace {
 
-using geometry::Point2;
 using geometry::Points;
 
 constexpr double tolerance_pixels = 0.01;
@@ -23,26 +22,14 @@ constexpr double width_of_margin = 0.05;
 constexpr int least_width = 200;
 constexpr int least_height = 150;
 
-/// The smallest axis-parallel rectangle round what was added.
-struct Bounds {
-  Point2 lower = Point2::Constant(std::numeric_limits<double>::infinity());
-  Point2 upper = -lower;
-
-  void add(const Points<2>& points) {
-    lower = lower.cwiseMin(points.rowwise().minCoeff());
-    upper = upper.cwiseMax(points.rowwise().maxCoeff());
-  }
-  double diagonal() const { return (upper - lower).norm(); }
-};
-
 /// All control points: holds the curves, but loosely.
 Bounds control_bounds(const Drawing& drawing) {
   Bounds bounds;
   for (const Chain& chain : drawing.chains) {
     for (const auto& curve : chain) bounds.add(curve.control_points());
   }
-  const bool is_empty = bounds.lower.x() > bounds.upper.x() || bounds.diagonal() == 0.0;
-  if (is_empty) throw InputError("the drawing is empty: no curves, or all of them in one point");
+  if (bounds.is_empty() || bounds.diagonal() == 0.0)
+    throw InputError("the drawing is empty: no curves, or all of them in one point");
   return bounds;
 }
 
@@ -51,37 +38,8 @@ using DrawableChain = std::vector<PathSegment>;
 
 std::vector<DrawableChain> drawable_chains(const Drawing& drawing, double tolerance) {
   std::vector<DrawableChain> result;
-  for (const Chain& chain : drawing.chains) {
-    DrawableChain& drawable = result.emplace_back();
-    for (const auto& curve : chain) {
-      for (PathSegment& segment : path_segments(curve, tolerance)) drawable.push_back(std::move(segment));
-    }
-  }
+  for (const Chain& chain : drawing.chains) result.push_back(path_segments(chain, tolerance));
   return result;
-}
-
-/// The parameters in (0, 1) at which one coordinate, a Bézier polynomial of degree 3 at most, is stationary.
-std::vector<double> stationary_parameters(const Eigen::RowVectorXd& b) {
-  std::vector<double> roots;
-  if (b.size() == 3) {
-    roots = {(b(0) - b(1)) / (b(0) - 2.0 * b(1) + b(2))};
-  } else if (b.size() == 4) {
-    const double a = -b(0) + 3.0 * b(1) - 3.0 * b(2) + b(3);
-    const double half_b = b(0) - 2.0 * b(1) + b(2);
-    const double c = b(1) - b(0);
-    const double root = std::sqrt(std::max(0.0, half_b * half_b - a * c));
-    const double q = -(half_b + std::copysign(root, half_b));
-    roots = {q / a, c / q};
-  }
-  std::erase_if(roots, [](double t) { return !(t > 0.0 && t < 1.0); });
-  return roots;
-}
-
-Point2 evaluate(PathSegment points, double t) {
-  for (Eigen::Index k = points.cols() - 1; k > 0; --k) {
-    for (Eigen::Index i = 0; i < k; ++i) points.col(i) = (1.0 - t) * points.col(i) + t * points.col(i + 1).eval();
-  }
-  return points.col(0);
 }
 
 /// The extent of what is drawn.
@@ -91,13 +49,7 @@ Bounds drawn_bounds(const Drawing& drawing, const std::vector<DrawableChain>& dr
   for (const Points<2>& marks : drawing.marks) bounds.add(marks);
   for (const Comb& comb : drawing.combs) bounds.add(comb.tips);
   for (const DrawableChain& chain : drawable) {
-    for (const PathSegment& segment : chain) {
-      bounds.add(segment.leftCols(1));
-      bounds.add(segment.rightCols(1));
-      for (const Eigen::Index coordinate : {0, 1}) {
-        for (const double t : stationary_parameters(segment.row(coordinate))) bounds.add(evaluate(segment, t));
-      }
-    }
+    for (const PathSegment& segment : chain) add_extent(segment, bounds);
   }
   return bounds;
 }

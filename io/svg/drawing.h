@@ -6,13 +6,11 @@
 
 #include "geometry/nurbs/curve.h"
 #include "geometry/topology/orientation.h"
+#include "io/svg/bezier_path.h"
 #include "io/svg/frame.h"
 
 /// Drawings of plane boundaries, true to scale.
 namespace isorim::io::svg {
-
-/// Curves of which each starts where the one before ends; closed if the last ends where the first starts.
-using Chain = std::vector<geometry::NurbsCurve<2>>;
 
 /// A curvature comb: teeth from the curve outwards, as long as its curvature says.
 struct Comb {
