@@ -31,7 +31,10 @@ class Chainer {
     for (const NurbsCurve<2>& curve : curves) {
       const int from = vertices_.add(scaled(start_of(curve)));
       const int to = vertices_.add(scaled(end_of(curve)));
-      if (from == to && extent(curve) <= tolerance) continue;
+      if (from == to && extent(curve) <= tolerance) {
+        short_.push_back({curve, from, to});
+        continue;
+      }
       edges_.push_back({curve, from, to});
     }
     leaving_.resize(static_cast<std::size_t>(vertices_.size()));
@@ -51,6 +54,7 @@ class Chainer {
       for (std::size_t i = first; !edges_[i].used; i = next_of(i)) {
         edges_[i].used = true;
         loop.curves.push_back(edges_[i].curve);
+        add_short_curves(loop, edges_[i].to, start_of(edges_[next_of(i)].curve));
       }
       close_small_gaps(loop);
       result.push_back(std::move(loop));
@@ -110,6 +114,28 @@ class Chainer {
     return best;
   }
 
+  bool meet(const Point2& a, const Point2& b) const { return scaled(a - b).cwiseAbs().maxCoeff() <= closing_; }
+
+  /// Those that lead on from the loop's end to the start of its next curve, all within one vertex.
+  void add_short_curves(TrimLoop& loop, int vertex, const Point2& next) {
+    const std::size_t before = loop.curves.size();
+    std::vector<std::size_t> taken;
+    while (!meet(end_of(loop.curves.back()), next)) {
+      const Point2 end = end_of(loop.curves.back());
+      const auto found = std::find_if(short_.begin(), short_.end(), [&](const Edge& edge) {
+        return !edge.used && edge.from == vertex && meet(start_of(edge.curve), end);
+      });
+      if (found == short_.end()) break;
+      found->used = true;
+      taken.push_back(static_cast<std::size_t>(found - short_.begin()));
+      loop.curves.push_back(found->curve);
+    }
+    if (meet(end_of(loop.curves.back()), next)) return;
+    // They lead elsewhere.
+    loop.curves.erase(loop.curves.begin() + static_cast<std::ptrdiff_t>(before), loop.curves.end());
+    for (const std::size_t i : taken) short_[i].used = false;
+  }
+
   bool all_used(const std::vector<std::size_t>& candidates) const {
     return std::all_of(candidates.begin(), candidates.end(), [&](std::size_t i) { return edges_[i].used; });
   }
@@ -132,6 +158,8 @@ class Chainer {
   double closing_;
   PointClusters<2> vertices_;
   std::vector<Edge> edges_;
+  /// Within one vertex.
+  std::vector<Edge> short_;
   std::vector<std::vector<std::size_t>> leaving_;
   std::vector<int> entering_;
 };

@@ -1,6 +1,8 @@
 #include "geometry/propeller/blade_surface.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -78,6 +80,41 @@ NurbsCurve<3> interpolate_outline(const BladeSection& section, const std::vector
   return NurbsCurve<3>::from_points(spline.knots, spline.coefficients);
 }
 
+/// The means over the points of the distances between neighbouring outlines, scaled to [0, 1].
+std::vector<double> chord_lengths_across(std::span<const BladeSection> sections) {
+  std::vector<double> parameters{0.0};
+  for (std::size_t k = 1; k < sections.size(); ++k) {
+    const Points<3> step = outline_in_space(sections[k]) - outline_in_space(sections[k - 1]);
+    parameters.push_back(parameters.back() + step.colwise().norm().mean());
+  }
+  for (double& v : parameters) v /= parameters.back();
+  parameters.back() = 1.0;
+  return parameters;
+}
+
+std::vector<double> rounded_tip_parameters(std::span<const BladeSection> sections) {
+  const double tip = sections.back().station.radius;
+  const double root = sections.front().station.radius;
+  std::vector<double> parameters;
+  for (const BladeSection& section : sections)
+    parameters.push_back(1.0 - std::sqrt((tip - section.station.radius) / (tip - root)));
+  return parameters;
+}
+
+/// The polynomial surface through curves on one knot vector, at parameters across them.
+NurbsSurface<3> skin(std::span<const NurbsCurve<3>> curves, const std::vector<double>& parameters, int degree) {
+  const KnotVector across = averaged_knots(std::min(degree, static_cast<int>(curves.size()) - 1), parameters);
+  const Eigen::Index width = 3 * curves.front().control_points().cols();
+  Eigen::MatrixXd rows(width, static_cast<Eigen::Index>(curves.size()));
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    const Points<3> points = curves[k].control_points();
+    rows.col(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::VectorXd>(points.data(), width);
+  }
+  const BSpline net = interpolate(across, parameters, rows);
+  const Eigen::Map<const Points<3>> points(net.coefficients.data(), 3, net.coefficients.size() / 3);
+  return NurbsSurface<3>::from_points(curves.front().knots(), across, points);
+}
+
 /// Between the back and the face along one edge of the blade's surface.
 NurbsSurface<3> ruled_across(const NurbsCurve<3>& outline, double leading_edge) {
   const auto [back, face] = split(outline, leading_edge);
@@ -99,16 +136,41 @@ bool coincide(const NurbsCurve<3>& a, const NurbsCurve<3>& b) {
 
 }  // namespace
 
-NurbsSurface<3> blade_surface(std::span<const BladeSection> sections, const BladeSurfaceOptions& options) {
+std::vector<double> parameters_across(std::span<const BladeSection> sections) {
+  check_sections(sections, 1);
+  return is_point(sections.back()) ? rounded_tip_parameters(sections) : chord_lengths_across(sections);
+}
+
+BladeSkin skin_blade(std::span<const BladeSection> sections, const BladeSurfaceOptions& options) {
   check_sections(sections, options.degree);
   const std::vector<double> common = outline_parameters(sections);
+  const bool has_own = options.fit == BladeFit::own_parameters;
   std::vector<NurbsCurve<3>> outlines;
   for (std::size_t k = 0; k < sections.size(); ++k) {
-    const bool has_own = options.fit == BladeFit::own_parameters && !is_point(sections[k]);
-    outlines.push_back(interpolate_outline(sections[k], has_own ? chord_parameters(sections[k], k) : common, options));
+    const bool takes_own = has_own && !is_point(sections[k]);
+    outlines.push_back(
+        interpolate_outline(sections[k], takes_own ? chord_parameters(sections[k], k) : common, options));
   }
-  if (options.fit == BladeFit::own_parameters) outlines = uniformise(outlines, options.uniformisation).sections;
-  return loft(outlines, {.degree = options.degree});
+  BladeKnots knots;
+  if (has_own) {
+    UniformSections uniform = uniformise(outlines, options.uniformisation);
+    knots.merged_control_points = options.uniformisation.method == Uniformisation::merge
+                                      ? uniform.control_points
+                                      : uniformise(outlines, {}).control_points;
+    knots.inserted = uniform.inserted;
+    knots.removed = uniform.removed;
+    knots.removal_error = uniform.error_bound;
+    outlines = std::move(uniform.sections);
+  }
+  NurbsSurface<3> surface = skin(outlines, parameters_across(sections), options.degree);
+  knots.control_points_round = surface.count_u();
+  knots.control_points_across = surface.count_v();
+  if (!has_own) knots.merged_control_points = knots.control_points_round;
+  return {std::move(surface), knots};
+}
+
+NurbsSurface<3> blade_surface(std::span<const BladeSection> sections, const BladeSurfaceOptions& options) {
+  return skin_blade(sections, options).surface;
 }
 
 double leading_edge_parameter(std::span<const BladeSection> sections) {

@@ -84,8 +84,14 @@ Boundary<3> all_blades(const Boundary<3>& blade, int count) {
   return result;
 }
 
+/// The hub with and without the places where the blades stand on it.
+struct HubParts {
+  std::vector<Patch<3>> beside_blades;
+  Boundary<3> whole;
+};
+
 /// The hub's side and ends, given the part of the side that the blades cover.
-std::vector<Patch<3>> hub_patches(const TrimmedSurface& covered, const Hub& hub) {
+HubParts hub_parts(const TrimmedSurface& covered, const Hub& hub) {
   const Interval blades = covered.surface().knots_v().domain();
   const Interval ends{hub.aft.value_or(blades.first - overhang * hub.radius),
                       hub.forward.value_or(blades.last + overhang * hub.radius)};
@@ -98,38 +104,54 @@ std::vector<Patch<3>> hub_patches(const TrimmedSurface& covered, const Hub& hub)
   const double size = 2.0 * hub.radius + ends.length();
   std::vector<TrimLoop> loops = loops_beside(covered, side, size);
   const std::array<NurbsCurve<3>, 4> edges = boundary_curves(side);
-  return {{"hub", TrimmedSurface(side, std::move(loops))},
-          {"hub_aft", fan<3>(edges[0], Point3(ends.first, 0.0, 0.0))},
-          {"hub_forward", fan<3>(edges[2], Point3(ends.last, 0.0, 0.0))}};
+  const Patch<3> aft{"hub_aft", fan<3>(edges[0], Point3(ends.first, 0.0, 0.0))};
+  const Patch<3> forward{"hub_forward", fan<3>(edges[2], Point3(ends.last, 0.0, 0.0))};
+  return {{{"hub", TrimmedSurface(side, std::move(loops))}, aft, forward}, {{{"hub", side}, aft, forward}}};
 }
 
-/// The blades outside the hub, and the hub outside the blades.
-Boundary<3> joined(const Boundary<3>& blades, const Hub& hub) {
+/// The blades outside the hub, and the hub outside the blades; the hub alone.
+struct Joined {
+  Boundary<3> screw;
+  Boundary<3> hub;
+};
+
+Joined joined(const Boundary<3>& blades, const Hub& hub) {
   const CylinderTool tool{Point3::Zero(), Vector3::UnitX(), hub.radius, KeptSide::outside};
-  Boundary<3> result;
-  std::vector<Patch<3>> hub_parts;
+  Joined result;
+  std::optional<HubParts> parts;
   for (Patch<3>& patch : clip(blades, tool).patches) {
     if (patch.name == "cap")
-      hub_parts = hub_patches(std::get<TrimmedSurface>(patch.shape), hub);
+      parts = hub_parts(std::get<TrimmedSurface>(patch.shape), hub);
     else
-      result.patches.push_back(std::move(patch));
+      result.screw.patches.push_back(std::move(patch));
   }
-  if (hub_parts.empty())
+  if (!parts)
     throw GeometryError(fmt::format("propeller: the blades do not reach the hub of radius {:.6g}", hub.radius));
-  for (Patch<3>& patch : hub_parts) result.patches.push_back(std::move(patch));
+  for (Patch<3>& patch : parts->beside_blades) result.screw.patches.push_back(std::move(patch));
+  result.hub = std::move(parts->whole);
   return result;
+}
+
+Boundary<3> closed(const Boundary<3>& boundary) {
+  OrientedBoundary<3> oriented = orient(boundary);
+  require_closed(oriented);
+  return std::move(oriented.boundary);
 }
 
 }  // namespace
 
-Boundary<3> propeller(const Propeller& screw) {
+PropellerModel propeller_model(const Propeller& screw) {
   check_propeller(screw);
-  const NurbsSurface<3> surface = blade_surface(screw.sections, screw.surface);
-  const NurbsSurface<3> reaching = screw.hub ? into_hub(surface, screw.hub->radius) : surface;
+  const BladeSkin skin = skin_blade(screw.sections, screw.surface);
+  const NurbsSurface<3> reaching = screw.hub ? into_hub(skin.surface, screw.hub->radius) : skin.surface;
   const Boundary<3> blades = all_blades(close_blade(reaching, leading_edge_parameter(screw.sections)), screw.blades);
-  OrientedBoundary<3> oriented = orient(screw.hub ? joined(blades, *screw.hub) : blades);
-  require_closed(oriented);
-  return std::move(oriented.boundary);
+  if (!screw.hub) return {closed(blades), skin.knots, std::nullopt};
+  const Joined parts = joined(blades, *screw.hub);
+  return {closed(parts.screw), skin.knots, closed(parts.hub)};
+}
+
+Boundary<3> propeller(const Propeller& screw) {
+  return propeller_model(screw).boundary;
 }
 
 }  // namespace isorim::geometry

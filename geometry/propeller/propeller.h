@@ -26,6 +26,14 @@ struct Propeller {
   std::optional<Hub> hub;
 };
 
+/// A screw's boundary and what is known of its parts.
+struct PropellerModel {
+  Boundary<3> boundary;
+  BladeKnots knots;
+  /// The hub alone, as if there were no blades: closed, oriented outward.
+  std::optional<Boundary<3>> hub;
+};
+
 /// The screw as one closed boundary, oriented outward. The patches of blade k are "blade_k", and "blade_k_tip",
 /// "blade_k_trailing_edge", without a hub also "blade_k_root", where blade_solid() has such; those of the hub "hub",
 /// "hub_aft", "hub_forward".
@@ -36,6 +44,7 @@ struct Propeller {
 ///
 /// Throws GeometryError as blade_solid() does; for blades < 1; for a hub whose measures are not positive, which the
 /// blades do not reach, which is larger than they, or whose ends cut them.
+PropellerModel propeller_model(const Propeller& propeller);
 Boundary<3> propeller(const Propeller& propeller);
 
 }  // namespace isorim::geometry

@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
 #include "geometry/propeller/series_tables.h"
+#include "geometry/propeller/tip_outline.h"
 #include "geometry/shapes/checks.h"
 
 namespace isorim::geometry {
@@ -84,24 +86,70 @@ Points<2> table_outline(const Measures& measures, std::span<const double> statio
 
 BladeSection section_of(const Measures& measures, const BladeStation& station, std::span<const double> stations,
                         std::span<const double> face, std::span<const double> back) {
-  BladeSection section{station,
-                       measures.chord,
-                       measures.leading_edge,
-                       measures.max_thickness,
-                       table_outline(measures, stations, face, back),
-                       static_cast<Eigen::Index>(stations.size()) - 1};
-  if (measures.chord == 0.0) section.outline.colwise() = Point2(0.0, 0.5 * measures.max_thickness);
-  return section;
+  return {station,
+          measures.chord,
+          measures.leading_edge,
+          measures.max_thickness,
+          table_outline(measures, stations, face, back),
+          static_cast<Eigen::Index>(stations.size()) - 1};
 }
 
-/// The tables of one series, row by row.
-BladeSection section_at(const SeriesBlade& blade, std::size_t k, const BladeStation& station) {
-  if (blade.series == BladeSeries::kaplan) {
-    using namespace series::kaplan;
-    return section_of(kaplan_measures(blade, k), station, stations, face[k], back[k]);
-  }
+BladeStation station_at(const SeriesBlade& blade, double radius_ratio) {
+  BladeStation station;
+  station.radius = 0.5 * blade.diameter * radius_ratio;
+  station.pitch = blade.pitch_ratio(radius_ratio) * blade.diameter;
+  station.skew = blade.skew(radius_ratio);
+  station.rake = blade.rake(radius_ratio);
+  return station;
+}
+
+std::vector<BladeSection> kaplan_sections(const SeriesBlade& blade) {
+  using namespace series::kaplan;
+  std::vector<BladeSection> sections;
+  for (std::size_t k = 0; k < series::radii.size(); ++k)
+    sections.push_back(
+        section_of(kaplan_measures(blade, k), station_at(blade, series::radii[k]), stations, face[k], back[k]));
+  return sections;
+}
+
+/// Beyond the last row with a chord: a rounded outline, and the thickness of the tables down to where it is rounded
+/// off; the profile does not change any more.
+std::vector<BladeSection> wageningen_tip(const SeriesBlade& blade) {
   using namespace series::wageningen_b;
-  return section_of(wageningen_measures(blade, k), station, stations, face[k], back[k]);
+  const std::size_t rows = series::radii.size() - 1;
+  std::vector<OutlineEdges> edges;
+  for (std::size_t k = 0; k < rows; ++k) {
+    const Measures row = wageningen_measures(blade, k);
+    edges.push_back({row.leading_edge, row.leading_edge - row.chord});
+  }
+  const RoundedOutline outline(std::span(series::radii).first(rows), edges);
+  const double last = series::radii[rows - 1];
+  const double last_thickness = wageningen_measures(blade, rows - 1).max_thickness;
+  const double tip_thickness = wageningen_measures(blade, rows).max_thickness;
+  std::vector<BladeSection> sections;
+  for (const double ratio : tip_radii(last)) {
+    const OutlineEdges place = outline(ratio);
+    Measures measures;
+    measures.leading_edge = place.leading;
+    measures.chord = ratio < 1.0 ? place.leading - place.trailing : 0.0;
+    measures.max_thickness = std::lerp(last_thickness, tip_thickness, (ratio - last) / (1.0 - last)) *
+                             tip_thickness_factor(ratio, last, 2.0 * tip_thickness / blade.diameter);
+    measures.max_thickness_place = 0.5 * measures.chord;
+    sections.push_back(section_of(measures, station_at(blade, ratio), stations, face[rows], back[rows]));
+  }
+  return sections;
+}
+
+std::vector<BladeSection> wageningen_sections(const SeriesBlade& blade) {
+  using namespace series::wageningen_b;
+  std::vector<BladeSection> sections;
+  for (std::size_t k = 0; k + 1 < series::radii.size(); ++k) {
+    BladeStation station = station_at(blade, series::radii[k]);
+    if (blade.has_reduced_root_pitch) station.pitch *= four_blades_pitch[k];
+    sections.push_back(section_of(wageningen_measures(blade, k), station, stations, face[k], back[k]));
+  }
+  for (BladeSection& section : wageningen_tip(blade)) sections.push_back(std::move(section));
+  return sections;
 }
 
 struct TestedRange {
@@ -122,18 +170,7 @@ TestedRange tested_range(BladeSeries series) {
 
 std::vector<BladeSection> series_sections(const SeriesBlade& blade) {
   check_blade(blade);
-  std::vector<BladeSection> sections;
-  for (std::size_t k = 0; k < series::radii.size(); ++k) {
-    const double ratio = series::radii[k];
-    BladeStation station;
-    station.radius = 0.5 * blade.diameter * ratio;
-    station.pitch = blade.pitch_ratio(ratio) * blade.diameter;
-    if (blade.has_reduced_root_pitch) station.pitch *= series::wageningen_b::four_blades_pitch[k];
-    station.skew = blade.skew(ratio);
-    station.rake = blade.rake(ratio);
-    sections.push_back(section_at(blade, k, station));
-  }
-  return sections;
+  return blade.series == BladeSeries::kaplan ? kaplan_sections(blade) : wageningen_sections(blade);
 }
 
 std::vector<std::string> outside_tested_range(const SeriesBlade& blade) {

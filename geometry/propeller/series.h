@@ -32,8 +32,10 @@ struct SeriesBlade {
   bool has_reduced_root_pitch = false;
 };
 
-/// The sections at r / R = 0.2, 0.3, .., 1.0. Kaplan: 25 points each. Wageningen B: 39; that at the tip has no chord
-/// and is one point, half way up its thickness, as often as the others have points. Edges are sharp.
+/// Kaplan: the sections at r / R = 0.2, 0.3, .., 1.0, 25 points each. Wageningen B: those at 0.2, 0.3, .., 0.9, 39
+/// points each, and beyond them three of the rounded tip (tip_outline.h), the last one a point as often as the others
+/// have points. The series' tables leave the place of the tip open; their thickness there, 0.003 D, is rounded off, by
+/// 1 % at 0.955 R and 12 % at 0.989 R. Edges are sharp.
 ///
 /// Throws GeometryError naming the quantity if a length is not positive, the series has no table for the number of
 /// blades (Kaplan 3 to 7, Wageningen B 3 to 7), or the reduced pitch is asked of another screw.

@@ -10,6 +10,7 @@
 #include "io/case/analysis_checks.h"
 #include "io/expression.h"
 #include "io/fit/fit_shape.h"
+#include "io/propeller/propeller_shape.h"
 
 namespace isorim::io {
 namespace {
@@ -26,11 +27,18 @@ std::pair<int, int> value_shape(const std::string& quantity, int dim) {
   return {1, 1};
 }
 
-std::vector<std::string> quantity_names(const CaseKeys& keys, int dim) {
+/// Properties, and what kinds of shapes have besides.
+std::vector<std::string> shape_quantity_names(const CaseKeys& keys, int dim) {
   std::vector<std::string> names = property_names(dim);
-  if (std::holds_alternative<FitKeys>(keys.geometry)) {
-    for (std::string& name : fit_quantity_names()) names.push_back(std::move(name));
-  }
+  std::vector<std::string> more;
+  if (std::holds_alternative<FitKeys>(keys.geometry)) more = fit_quantity_names();
+  if (std::holds_alternative<PropellerKeys>(keys.geometry)) more = propeller_quantity_names();
+  names.insert(names.end(), more.begin(), more.end());
+  return names;
+}
+
+std::vector<std::string> quantity_names(const CaseKeys& keys, int dim) {
+  std::vector<std::string> names = shape_quantity_names(keys, dim);
   for (const IntegralKeys& integral : keys.integral) names.push_back(integral.name);
   for (AnalysisQuantity& quantity : analysis_quantities(keys, dim)) names.push_back(std::move(quantity.name));
   for (const PlaneSectionKeys& section : keys.section)
@@ -49,10 +57,7 @@ void complain_unknown_quantity(const std::string& name, const std::vector<std::s
 }
 
 void check_integrals(const CaseKeys& keys, int dim, Complaints& complaints) {
-  std::vector<std::string> taken = property_names(dim);
-  if (std::holds_alternative<FitKeys>(keys.geometry)) {
-    for (std::string& name : fit_quantity_names()) taken.push_back(std::move(name));
-  }
+  std::vector<std::string> taken = shape_quantity_names(keys, dim);
   const std::vector<std::string> reserved = taken;
   for (const IntegralKeys& integral : keys.integral) {
     // Already complained of.
@@ -199,6 +204,12 @@ std::optional<int> build_shape(CaseFile& file, const FileShapeOptions& options, 
       file.fit = std::move(fitted.facts);
       return dim;
     }
+    if (const auto* keys = std::get_if<PropellerKeys>(&file.keys.geometry)) {
+      PropellerShape built = build_propeller_shape(*keys);
+      file.shape = std::move(built.boundary);
+      file.propeller = std::make_shared<const PropellerFacts>(std::move(built.facts));
+      return dim;
+    }
     if (dim == 2) {
       file.shape = build_boundary<2>(file.keys.geometry);
     } else {
@@ -229,6 +240,11 @@ std::vector<std::string> property_names(int dim) {
 
 std::vector<std::string> fit_quantity_names() {
   return {"control_points", "max_distance", "rms_distance", "bending_energy", "curvature_sign_changes"};
+}
+
+std::vector<std::string> propeller_quantity_names() {
+  return {"expanded_area_ratio", "developed_area_ratio", "projected_area_ratio", "blade_volume",
+          "hub_volume",          "control_points_round", "control_points_across"};
 }
 
 CaseFile read_case(const Value& root, const std::filesystem::path& path, const FileShapeOptions& options) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +19,8 @@
 /// A case file, read and validated: the keys as they stand there with their defaults filled in. The declarations are
 /// in section_declarations.cpp and shape_declarations.cpp.
 namespace isorim::io {
+
+struct PropellerFacts;
 
 /// What to do with a boundary that has free edges when the integrals over its domain are asked for.
 enum class OpenBoundary { refuse, integrate };
@@ -108,6 +111,8 @@ struct CaseFile {
   std::optional<CadFacts> cad;
   /// If the shape is fitted to points.
   std::optional<FitFacts> fit;
+  /// If the shape is a propeller, else null.
+  std::shared_ptr<const PropellerFacts> propeller;
   /// The case with its overrides, as TOML.
   std::string resolved;
 
@@ -140,5 +145,9 @@ std::vector<std::string> property_names(int dim);
 /// Those that a fitted shape has besides: "control_points", "max_distance", "rms_distance", "bending_energy",
 /// "curvature_sign_changes".
 std::vector<std::string> fit_quantity_names();
+
+/// Those that a propeller has besides: "expanded_area_ratio", "developed_area_ratio", "projected_area_ratio",
+/// "blade_volume", "hub_volume", "control_points_round", "control_points_across".
+std::vector<std::string> propeller_quantity_names();
 
 }  // namespace isorim::io

@@ -9,7 +9,9 @@ void check_law(const NumberArray& law, Complaints& complaints) {
   complaints.add(law.where, "found a list; expected one number, or a list of rows [r/R, value], at least two");
 }
 
-void check_propeller(const PropellerKeys& keys, const KeyPlace&, Complaints& complaints) {
+void check_propeller(const PropellerKeys& keys, const KeyPlace& where, Complaints& complaints) {
+  if (keys.removal_tolerance && keys.uniformisation != BladeUniformisation::insert_and_remove)
+    complaints.add(where, "found \"removal_tolerance\"; expected uniformisation = \"insert_and_remove\" beside it");
   for (const NumberArray* law : {&keys.pitch_ratio, &keys.rake, &keys.skew}) check_law(*law, complaints);
 }
 
@@ -53,7 +55,22 @@ const Schema<PropellerKeys>& schema<PropellerKeys>() {
                    {.text = "X of the hub's after and forward end; absent: a quarter of its radius beyond the blades.",
                     .unit = "length"})
               .choice("hand", &PropellerKeys::hand, {{"right", Hand::right}, {"left", Hand::left}},
-                      {.text = "Seen from astern, a right-handed screw turns clockwise when the ship goes ahead."}))
+                      {.text = "Seen from astern, a right-handed screw turns clockwise when the ship goes ahead."})
+              .choice("uniformisation", &PropellerKeys::uniformisation,
+                      {{"averaged", BladeUniformisation::averaged},
+                       {"merge", BladeUniformisation::merge},
+                       {"insert_and_remove", BladeUniformisation::insert_and_remove}},
+                      {.text = "How the sections come to the same knots. averaged: by one set of parameters, the mean "
+                               "of their own. The others leave each section its own parameters: merge gives all of "
+                               "them all knots, insert_and_remove even ones and what cannot be removed."})
+              .key("inserted_knots", &PropellerKeys::inserted_knots,
+                   {.text = "uniformisation = \"insert_and_remove\": number of even knots.",
+                    .range = Range::at_least(1)})
+              .key("removal_tolerance", &PropellerKeys::removal_tolerance,
+                   {.text = "uniformisation = \"insert_and_remove\": by how much it may move any point of a section; "
+                            "1e-4 of the diameter if absent.",
+                    .unit = "length",
+                    .range = Range::at_least(0)}))
           .check(check_propeller);
   return declared;
 }

@@ -19,8 +19,8 @@
 #include "geometry/shapes/transforms.h"
 #include "io/case/curve_builder.h"
 #include "io/case/face_builder.h"
-#include "io/case/propeller_builder.h"
 #include "io/case/tspline_builder.h"
+#include "io/propeller/propeller_shape.h"
 
 namespace isorim::io {
 namespace {
@@ -355,7 +355,6 @@ struct SurfaceBuilder {
     return face("quadrilateral", quadrilateral_surface(keys), keys);
   }
   Result operator()(const NurbsPatchKeys& keys) const { return face("nurbs", nurbs_surface(keys), keys); }
-  Result operator()(const PropellerKeys& keys) const { return propeller(keys); }
   Result operator()(const TSplineKeys& keys) const {
     const Result source = keys.from.items.empty() ? Result{} : nurbs_surfaces(keys.from.items);
     Result result;
@@ -383,16 +382,8 @@ bool has_clip(const ShapeKeys&) {
 
 /// Moved, cut and named.
 template <class Keys>
-Boundary<3> finished_solid(Boundary<3> boundary, const Keys& keys) {
-  if constexpr (std::is_base_of_v<SolidKeys, Keys>) {
-    if (has_clip(keys)) {
-      ShapeKeys moving;
-      moving.transform = keys.transform;
-      boundary = clipped(finished<3>(std::move(boundary), moving), keys.clip, keys.where);
-      prefix_names(boundary, keys.name);
-      return boundary;
-    }
-  }
+Boundary<3> placed(Boundary<3> boundary, const Keys& keys) {
+  if constexpr (std::is_base_of_v<SolidKeys, Keys>) return finished_solid(std::move(boundary), keys);
   return finished<3>(std::move(boundary), keys);
 }
 
@@ -407,7 +398,7 @@ template <class Keys>
 Boundary<3> surface(const Keys& keys, Meshes& meshes) {
   return located(keys.where, [&] {
     const auto before = static_cast<std::ptrdiff_t>(meshes.size());
-    Boundary<3> boundary = finished_solid(SurfaceBuilder{meshes}(keys), keys);
+    Boundary<3> boundary = placed(SurfaceBuilder{meshes}(keys), keys);
     if (has_clip(keys)) meshes.erase(meshes.begin() + before, meshes.end());
     return boundary;
   });
@@ -467,6 +458,7 @@ template <>
 struct GeometryBuilder<3> {
   BuiltBoundary<3> operator()(const NurbsKeys& keys) const { return patches(keys); }
   BuiltBoundary<3> operator()(const PatchesKeys& keys) const { return patches(keys); }
+  BuiltBoundary<3> operator()(const PropellerKeys& keys) const { return build_propeller_shape(keys).boundary; }
   template <class Keys>
   BuiltBoundary<3> operator()(const Keys& keys) const {
     if constexpr (std::is_invocable_v<SurfaceBuilder, const Keys&>) {
@@ -516,6 +508,15 @@ Boundary<Dim> finished(Boundary<Dim> boundary, const ShapeKeys& keys) {
     const geometry::AffineMap<Dim> map = affine_map<Dim>(keys.transform);
     boundary = geometry::transform(boundary, map);
   }
+  prefix_names(boundary, keys.name);
+  return boundary;
+}
+
+Boundary<3> finished_solid(Boundary<3> boundary, const SolidKeys& keys) {
+  if (!has_clip(keys)) return finished<3>(std::move(boundary), keys);
+  ShapeKeys moving;
+  moving.transform = keys.transform;
+  boundary = clipped(finished<3>(std::move(boundary), moving), keys.clip, keys.where);
   prefix_names(boundary, keys.name);
   return boundary;
 }

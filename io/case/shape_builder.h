@@ -37,6 +37,9 @@ std::optional<int> dimension(const GeometryKeys& keys);
 template <int Dim>
 geometry::Boundary<Dim> finished(geometry::Boundary<Dim> boundary, const ShapeKeys& keys);
 
+/// The same for a solid, cut by the keys' clip between the two.
+geometry::Boundary<3> finished_solid(geometry::Boundary<3> boundary, const SolidKeys& keys);
+
 /// Builds the exact boundary of a shape of the plane (Dim = 2) or of space (Dim = 3); Dim must be the shape's
 /// dimension(). Files are for build_file_shape() (file_shape.h). Throws InputError with all complaints at once, each
 /// with file, line and key: knots that contradict themselves or the points, wrong numbers of coordinates, loops that

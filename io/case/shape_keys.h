@@ -237,6 +237,9 @@ struct TSplineKeys : SolidKeys {
   OneOrMany<RefineKeys> refine;
 };
 
+/// How the sections of a blade come to the same knots.
+enum class BladeUniformisation { averaged, merge, insert_and_remove };
+
 /// A screw of a systematic series.
 struct PropellerKeys : SolidKeys {
   geometry::BladeSeries series = geometry::BladeSeries::kaplan;
@@ -254,6 +257,10 @@ struct PropellerKeys : SolidKeys {
   double hub_ratio = 0.2;
   std::optional<Eigen::Vector2d> hub_ends;
   geometry::Hand hand = geometry::Hand::right;
+  BladeUniformisation uniformisation = BladeUniformisation::averaged;
+  int inserted_knots = 25;
+  /// Absent: 1e-4 of the diameter.
+  std::optional<double> removal_tolerance;
 };
 
 using SurfaceKeys =

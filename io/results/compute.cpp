@@ -16,6 +16,7 @@
 #include "io/case/shape_builder.h"
 #include "io/expression.h"
 #include "io/results/plane_sections.h"
+#include "io/results/propeller_report.h"
 #include "quadrature/parallel.h"
 #include "quadrature/rim.h"
 #include "solver/properties.h"
@@ -336,6 +337,19 @@ void add_fit(const CaseFile& file, Report& report) {
   report.warnings.insert(report.warnings.end(), file.fit->warnings.begin(), file.fit->warnings.end());
 }
 
+// --- Propellers -----------------------------------------------------------------------------------------------
+
+/// After the properties, which it uses.
+void add_propeller(const CaseFile& file, const RunOptions& run, Report& report) {
+  if (!file.propeller) return;
+  report.propeller = file.propeller;
+  report.propeller_quantities = located(common_keys(file.keys.geometry).where, [&] {
+    return propeller_quantities(*file.propeller, report.properties,
+                                integration_options(file.keys.properties, run, "hub"));
+  });
+  report.warnings.insert(report.warnings.end(), file.propeller->warnings.begin(), file.propeller->warnings.end());
+}
+
 // --- Expectations ---------------------------------------------------------------------------------------------
 
 void compare_expectations(const CaseFile& file, Report& report) {
@@ -386,6 +400,7 @@ Report report_of(const CaseFile& file, const Model<Dim>& model, const RunOptions
   if (file.cad) report.warnings = file.cad->warnings;
   add_fit(file, report);
   add_properties(file, model, run, report);
+  add_propeller(file, run, report);
   for (const IntegralKeys& keys : file.keys.integral) {
     if (!is_result_integral(file, keys, Dim)) report.integrals.push_back(integrate(file, keys, model, run));
   }

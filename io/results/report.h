@@ -17,6 +17,7 @@
 namespace isorim::io {
 
 struct AnyAnalysis;
+struct PropellerFacts;
 struct SectionFamily;
 
 /// A number, a vector (columns = 1) or a matrix, entry by entry along the rows.
@@ -118,6 +119,9 @@ struct Report {
   /// If the shape is fitted to points, and fit_quantity_names() of it.
   std::optional<FitFacts> fit;
   std::vector<Quantity> fit_quantities;
+  /// If the shape is a propeller (else null), and propeller_quantity_names() of it.
+  std::shared_ptr<const PropellerFacts> propeller;
+  std::vector<Quantity> propeller_quantities;
   std::vector<Quantity> properties;
   std::vector<Quantity> integrals;
   /// If the case is an analysis; its fields on the boundary, for the writers of pictures.

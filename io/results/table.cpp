@@ -10,6 +10,7 @@
 #include "io/analysis/analysis.h"
 #include "io/results/fit_text.h"
 #include "io/results/plane_sections.h"
+#include "io/results/propeller_report.h"
 
 namespace isorim::io {
 namespace {
@@ -221,7 +222,8 @@ std::string results_text(const Report& report) {
                    {"expected", Align::right},
                    {"difference", Align::right},
                    {""}});
-  for (const std::vector<Quantity>* list : {&report.fit_quantities, &report.properties, &report.integrals}) {
+  for (const std::vector<Quantity>* list :
+       {&report.fit_quantities, &report.properties, &report.propeller_quantities, &report.integrals}) {
     for (const Quantity& quantity : *list) {
       if (quantity.name != "principal_axes") add_quantity(table, report, quantity);
     }
@@ -237,9 +239,11 @@ std::string results_text(const Report& report) {
     }
   }
   add_quantity(table, report, {"closure_defect", single(report.geometry.closure_defect), {}, {}, {}, ""});
-  return fmt::format("{}\n  {}\n{}{}{}{}\n{}\n{}  {}\n", report.title, geometry_line(report.geometry), cad_line(report),
-                     report.fit ? fit_text(*report.fit) : "", analysis_line(report), history_text(report),
-                     table.text(2), report.sections ? sections_text(*report.sections) : "", status_line(report));
+  return fmt::format("{}\n  {}\n{}{}{}{}{}\n{}\n{}  {}\n", report.title, geometry_line(report.geometry),
+                     cad_line(report), report.fit ? fit_text(*report.fit) : "",
+                     report.propeller ? propeller_text(*report.propeller) : "", analysis_line(report),
+                     history_text(report), table.text(2), report.sections ? sections_text(*report.sections) : "",
+                     status_line(report));
 }
 
 std::string verification_text(const std::vector<VerifiedCase>& cases) {

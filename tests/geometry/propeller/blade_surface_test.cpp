@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/propeller/series.h"
+#include "geometry/propeller/tip_outline.h"
 #include "geometry/spline/interpolation.h"
 #include "tests/geometry/refusals.h"
 
@@ -106,6 +107,69 @@ TEST(BladeSurface, IsSmoothRoundTheLeadingEdge) {
   for (const double knot : surface.knots_u().breakpoints()) {
     if (knot <= 0.0 || knot >= 1.0) continue;
     EXPECT_EQ(surface.knots_u().multiplicity(knot), 1);
+  }
+}
+
+/// Largest jumps of the first, second derivatives across the inner knots in one direction, over their size.
+double largest_jump(const NurbsSurface<3>& surface, Direction across) {
+  const std::vector<double> knots = surface.knots(across).breakpoints();
+  const Direction along = across == Direction::u ? Direction::v : Direction::u;
+  const Interval range = surface.knots(along).domain();
+  double largest = 0.0;
+  for (std::size_t k = 1; k + 1 < knots.size(); ++k) {
+    const auto [before, after] = split(surface, across, knots[k]);
+    for (int i = 1; i < 40; ++i) {
+      const double other = std::lerp(range.first, range.last, i / 40.0);
+      const Point2 place = across == Direction::u ? Point2(knots[k], other) : Point2(other, knots[k]);
+      const SurfaceJet<3> a = evaluate_jet(before, place);
+      const SurfaceJet<3> b = evaluate_jet(after, place);
+      largest = std::max({largest, (a.du - b.du).norm() / a.du.norm(), (a.dv - b.dv).norm() / a.dv.norm(),
+                          (a.duu - b.duu).norm() / (1.0 + a.duu.norm()), (a.duv - b.duv).norm() / (1.0 + a.duv.norm()),
+                          (a.dvv - b.dvv).norm() / (1.0 + a.dvv.norm())});
+    }
+  }
+  return largest;
+}
+
+TEST(BladeSurface, HasContinuousSecondDerivativesInside) {
+  for (const BladeSeries series : {BladeSeries::kaplan, BladeSeries::wageningen_b}) {
+    const NurbsSurface<3> surface = blade_surface(sections_of(series));
+    EXPECT_LE(largest_jump(surface, Direction::u), 1e-9);
+    EXPECT_LE(largest_jump(surface, Direction::v), 1e-9);
+  }
+}
+
+// On the way round the tip the trailing edge turns into the leading edge without a corner, at right angles to the
+// radius, and the surface keeps within the series' outline.
+TEST(BladeSurface, IsRoundAtTheTipOfWageningenBlades) {
+  const std::vector<BladeSection> sections = sections_of(BladeSeries::wageningen_b);
+  const NurbsSurface<3> surface = blade_surface(sections);
+  const double nose = leading_edge_parameter(sections);
+  const SurfaceJet<3> leading = evaluate_jet(surface, Point2(nose, 1.0));
+  const SurfaceJet<3> trailing = evaluate_jet(surface, Point2(0.0, 1.0));
+  // Towards the tip along the one edge, away from it along the other.
+  EXPECT_NEAR(leading.dv.normalized().dot(trailing.dv.normalized()), -1.0, 1e-3);
+  const CylindricalPoint tip = to_cylinder(leading.point);
+  const Vector3 outward(0.0, -std::sin(tip.angle), std::cos(tip.angle));
+  EXPECT_LE(std::abs(leading.dv.normalized().dot(outward)), 5e-3);
+  EXPECT_NEAR(tip.radius, 250.0, 1e-9);
+
+  std::vector<double> radii;
+  std::vector<OutlineEdges> edges;
+  for (std::size_t k = 0; k < 8; ++k) {
+    radii.push_back(sections[k].station.radius / 250.0);
+    edges.push_back({sections[k].leading_edge, sections[k].leading_edge - sections[k].chord});
+  }
+  const RoundedOutline outline(radii, edges);
+  for (int i = 0; i < 50; ++i) {
+    const Point3 point = evaluate(surface, Point2(nose, std::lerp(parameters_across(sections)[7], 1.0, i / 50.0)));
+    const double radius = to_cylinder(point).radius;
+    BladeStation station = sections.front().station;
+    station.radius = radius;
+    const double off = to_expanded(station, point).x() - outline(radius / 250.0).leading;
+    // The edge runs nearly along x there: across it the distance is shorter.
+    const double slope = (outline(radius / 250.0).leading - outline(radius / 250.0 - 1e-6).leading) / 250e-6;
+    EXPECT_LE(std::abs(off) / std::hypot(1.0, slope), 0.05) << radius;
   }
 }
 

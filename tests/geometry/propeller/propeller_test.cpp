@@ -75,6 +75,17 @@ TEST(Propeller, JoinsBladesThatLieAcrossTheSeamOfTheHub) {
   EXPECT_GE(trim_loops(joined.patches[5].shape).size(), 1u);
 }
 
+// All knots of all sections merged: some lie so near to each other that the curve on the hub is cut into pieces shorter
+// than the distance at which ends count as one.
+TEST(Propeller, JoinsBladesOfMergedKnots) {
+  Propeller screw = reference(BladeSeries::wageningen_b);
+  screw.surface.fit = BladeFit::own_parameters;
+  screw.hub = Hub{50.0};
+  const PropellerModel model = propeller_model(screw);
+  EXPECT_EQ(model.knots.control_points_round, 389);
+  EXPECT_EQ(model.knots.merged_control_points, 389);
+}
+
 TEST(Propeller, TakesHubsOfOtherSizesAndBothHands) {
   for (const double radius : {42.0, 50.0, 75.0, 130.0}) {
     Propeller screw = reference(BladeSeries::kaplan);

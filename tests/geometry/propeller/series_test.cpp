@@ -95,11 +95,10 @@ TEST(KaplanSeries, HasTheAreaRatioAskedFor) {
 
 TEST(WageningenSeries, HasTheReferenceOutline) {
   const std::vector<BladeSection> sections = series_sections(reference_blade(BladeSeries::wageningen_b));
-  const std::array<double, 9> chord{124.65, 141.15, 153.75, 161.4, 164.025, 160.8, 147.75, 118.65, 0.0};
-  const std::array<double, 9> thickness{18.3, 16.2, 14.1, 12.0, 9.9, 7.8, 5.7, 3.6, 1.5};
-  const std::array<double, 9> leading{76.90905, 86.52495, 92.40375, 94.5804, 92.018025,
-                                      84.2592,  68.40825, 41.64615, 0.0};
-  for (std::size_t k = 0; k < 9; ++k) {
+  const std::array<double, 8> chord{124.65, 141.15, 153.75, 161.4, 164.025, 160.8, 147.75, 118.65};
+  const std::array<double, 8> thickness{18.3, 16.2, 14.1, 12.0, 9.9, 7.8, 5.7, 3.6};
+  const std::array<double, 8> leading{76.90905, 86.52495, 92.40375, 94.5804, 92.018025, 84.2592, 68.40825, 41.64615};
+  for (std::size_t k = 0; k < 8; ++k) {
     EXPECT_NEAR(sections[k].chord, chord[k], 1e-12);
     EXPECT_NEAR(sections[k].max_thickness, thickness[k], 1e-12);
     EXPECT_NEAR(sections[k].leading_edge, leading[k], 1e-12);
@@ -120,9 +119,26 @@ TEST(WageningenSeries, ReadsItsTables) {
   EXPECT_NEAR(root.outline(1, root.leading_edge_point), 0.3560 * 18.3, 1e-12);
 }
 
-TEST(WageningenSeries, EndsInAPoint) {
-  const BladeSection tip = series_sections(reference_blade(BladeSeries::wageningen_b)).back();
-  for (Eigen::Index i = 0; i < tip.outline.cols(); ++i) EXPECT_EQ(tip.outline.col(i), Point2(0.0, 0.75));
+TEST(WageningenSeries, EndsInARoundedTip) {
+  const std::vector<BladeSection> sections = series_sections(reference_blade(BladeSeries::wageningen_b));
+  ASSERT_THAT(sections, SizeIs(11));
+  const BladeSection& tip = sections.back();
+  EXPECT_EQ(tip.station.radius, 250.0);
+  EXPECT_EQ(tip.chord, 0.0);
+  // Where the middle of the chord leads to: the cubic through 0.6, 0.7, 0.8 and 0.9 R.
+  const auto middle = [&](std::size_t k) { return sections[k].leading_edge - 0.5 * sections[k].chord; };
+  const double place = 4.0 * middle(7) - 6.0 * middle(6) + 4.0 * middle(5) - middle(4);
+  for (Eigen::Index i = 0; i < tip.outline.cols(); ++i)
+    EXPECT_NEAR((tip.outline.col(i) - Point2(place, 0.0)).norm(), 0, 1e-11);
+  // Chords as the root of the distance from the tip, and the thickness of the tables but for the tip's rounding.
+  const BladeSection& inner = sections[8];
+  const BladeSection& outer = sections[9];
+  EXPECT_NEAR(inner.station.radius / 250.0, 1.0 - 0.4 / 9.0, 1e-14);
+  EXPECT_NEAR(outer.station.radius / 250.0, 1.0 - 0.1 / 9.0, 1e-14);
+  EXPECT_NEAR(inner.chord / outer.chord, 2.0, 0.1);
+  const auto of_tables = [](double ratio) { return 500.0 * std::lerp(0.0072, 0.0030, (ratio - 0.9) / 0.1); };
+  EXPECT_NEAR(inner.max_thickness / of_tables(1.0 - 0.4 / 9.0), 0.99, 0.005);
+  EXPECT_NEAR(outer.max_thickness / of_tables(1.0 - 0.1 / 9.0), 0.88, 0.005);
 }
 
 TEST(WageningenSeries, ThreeBladesHaveTheirOwnOutline) {
