@@ -31,8 +31,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Scalar rows of a cluster that is not divided any more.
-constexpr int leaf_size = 64;
+/// Points of a cluster that is not divided any more. Blocks of vectors have up to three times the rank: with fewer
+/// points all rows of most of them would be integrated, and elements once for every cluster of functions beside them.
+constexpr int leaf_points = 64;
 /// Least distance of blocks of low rank, times the diagonal of the largest support.
 constexpr double separation = 0.75;
 /// Of the factors that precondition, for degrees up to 2 (1e-4 costs half as much again and saves two iterations of
@@ -332,7 +333,8 @@ void add_target_terms(const Assembler<Dim>& assembler, const SideConditions<Dim>
 template <int Dim>
 CompressedSystem assemble_compressed(const Assembler<Dim>& assembler, const SideConditions<Dim>& sides,
                                      const SolveOptions& options) {
-  const auto clusters = std::make_shared<const ClusterTree>(index_places(assembler), leaf_size);
+  const auto clusters =
+      std::make_shared<const ClusterTree>(index_places(assembler), leaf_points * assembler.components());
   BlockTreeOptions tree_options;
   tree_options.separation = separation;
   const auto tree = std::make_shared<const BlockTree>(clusters, clusters, tree_options);

@@ -132,7 +132,7 @@ PendingUpdate::PendingUpdate(Index rows, Index columns, double tolerance)
 
 void PendingUpdate::add(const HierarchicalMatrix& left, int a, const HierarchicalMatrix& right, int b) {
   const Product product{&left, a, &right, b};
-  if (is_leaf(left, a) || is_leaf(right, b))
+  if (!for_dense_leaf_ && (is_leaf(left, a) || is_leaf(right, b)))
     append(leaf_product(product));
   else
     products_.push_back(product);
@@ -182,6 +182,7 @@ PendingUpdate PendingUpdate::part(const BlockTree& tree, const Block& block, std
   const Index rows = tree.row_count(child);
   const Index columns = tree.column_count(child);
   PendingUpdate result(rows, columns, tolerance_);
+  result.for_dense_leaf_ = child.kind == BlockKind::dense;
   result.sum_ = {sum_.u.middleRows(tree.first_row(child) - tree.first_row(block), rows),
                  sum_.v.middleRows(tree.first_column(child) - tree.first_column(block), columns)};
   result.settled_ = sum_.rank();

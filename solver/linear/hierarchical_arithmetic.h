@@ -30,7 +30,8 @@ void add_transposed_block_product(const HierarchicalMatrix& matrix, int block, d
 
 /// What has yet to be added to a block: u v^T and products of blocks. Products are carried down the block tree and
 /// become numbers only where an operand or the block itself is a leaf, so that each block is truncated a few times, not
-/// once for every product (accumulators: Börm & Christophersen, arXiv:1703.09085).
+/// once for every product (accumulators: Börm & Christophersen, arXiv:1703.09085). What is for a dense leaf is not
+/// truncated at all.
 class PendingUpdate {
  public:
   /// For a block of so many scalar rows and columns; `accuracy` of each truncation, relative.
@@ -62,7 +63,9 @@ class PendingUpdate {
   LowRank sum_;
   /// Rank of the sum after it was last truncated.
   Eigen::Index settled_ = 0;
-  /// Both operands subdivided.
+  /// The block is a dense leaf: all products wait until they are added to its entries.
+  bool for_dense_leaf_ = false;
+  /// Both operands subdivided, or the block a dense leaf.
   std::vector<Product> products_;
 };
 

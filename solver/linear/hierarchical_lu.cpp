@@ -23,8 +23,9 @@ using Eigen::VectorXi;
 
 /// Blocks with fewer rows and columns than this together are not worth a task of their own.
 constexpr Index task_size = 512;
-/// Of a leaf's largest entry: pivots below are taken for zero.
-constexpr double smallest_pivot = 1e-12;
+/// Of a leaf's largest entry: pivots below are taken for zero. Those of a null space are as large as the errors of the
+/// matrix and of its factors; divided by them vectors would lose as many digits.
+constexpr double smallest_pivot = 1e-5;
 
 /// Gaussian elimination with row exchanges, in place; the number of pivots that were replaced by `scale`.
 int eliminate(MatrixXd& matrix, double scale, VectorXi& exchanges) {

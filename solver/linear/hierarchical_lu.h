@@ -19,7 +19,7 @@ struct FactorisationOptions {
 };
 
 /// The inverse of a hierarchical matrix by its LU factorisation in truncated arithmetic (Bebendorf, Hierarchical
-/// Matrices, 2008, section 2.7), rows exchanged within the dense leaves of the diagonal. A pivot below 1e-12 of its
+/// Matrices, 2008, section 2.7), rows exchanged within the dense leaves of the diagonal. A pivot below 1e-5 of its
 /// leaf's largest entry is replaced by that entry: so a singular matrix still gives a preconditioner.
 class HierarchicalLu final : public LinearOperator {
  public:
@@ -34,7 +34,7 @@ class HierarchicalLu final : public LinearOperator {
   void add_product(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> result) const override;
   std::size_t memory() const override { return factors_.memory(); }
 
-  /// Pivots that were replaced; not 0 for a matrix that is singular within rounding.
+  /// Pivots that were replaced; not 0 for a matrix that is singular, nearly.
   int replaced_pivots() const { return replaced_pivots_; }
   const HierarchicalMatrix& factors() const { return factors_; }
 
