@@ -109,6 +109,23 @@ void set_sphere(ElementShape<Dim>& shape) {
   shape.radius = (points.colwise() - shape.centre).colwise().norm().maxCoeff();
 }
 
+/// From the samples and the corners, beyond which speeds grow further.
+template <int Dim>
+void set_half_length(ElementShape<Dim>& shape) {
+  constexpr double share = 0.55;
+  const auto raise = [&](const auto& speeds) {
+    for (std::size_t d = 0; d < Dim - 1; ++d)
+      shape.half_length[d] = std::max(shape.half_length[d], share * speeds[d].norm());
+  };
+  for (const auto& sample : shape.samples) raise(sample.first);
+  for (int corner = 0; corner < (Dim == 2 ? 2 : 4); ++corner) {
+    geometry::Point<Dim - 1> place;
+    place[0] = corner % 2;
+    if constexpr (Dim == 3) place[1] = corner / 2;
+    raise(element_jet<Dim>(shape.net, place, geometry::Point<Dim>::Zero()).first);
+  }
+}
+
 /// Newton's direction for |offset|^2 / 2, or that of Gauss and Newton where the Hessian is not positive, within the
 /// directions that are free.
 template <int Dim>
@@ -199,11 +216,8 @@ ElementShape<Dim> element_shape(const ElementNet<Dim>& net, double field_degree,
   shape.net = net;
   set_sphere(shape);
   add_samples(shape);
-  for (std::size_t d = 0; d < Dim - 1; ++d) {
-    shape.growth[d] = jacobian_growth(net, d, field_degree, tolerance);
-    for (const auto& sample : shape.samples)
-      shape.half_length[d] = std::max(shape.half_length[d], 0.55 * sample.first[d].norm());
-  }
+  for (std::size_t d = 0; d < Dim - 1; ++d) shape.growth[d] = jacobian_growth(net, d, field_degree, tolerance);
+  set_half_length(shape);
   return shape;
 }
 

@@ -175,7 +175,8 @@ void append_halves(const NearRequest<3>& request, const Cell<2>& cell, std::size
 
 void append_cell(const NearRequest<3>& request, const Cell<2>& cell, const NearestPlace<3>& nearest, int depth,
                  NodeBuffer<3>& nodes) {
-  constexpr double most_distortion = 3.5;
+  constexpr double most_aspect = 5.0;
+  constexpr double most_distortion = 2.0;
   constexpr double least_change = 0.25;
   constexpr int cheap = 300;
   const bool is_own = request.is_own && cell.clamped(request.place) == request.place;
@@ -188,6 +189,11 @@ void append_cell(const NearRequest<3>& request, const Cell<2>& cell, const Neare
   }
   const PolarRule polar(request, sides(cell), nearest.place, nearest.jet, is_own, PolarRule::Around::place);
   if (tensor_points <= polar.points()) return append_tensor(cell, rules, nodes);
+  const std::array<double, 2> length{nearest.jet.first[0].norm() * cell.width(0),
+                                     nearest.jet.first[1].norm() * cell.width(1)};
+  const std::size_t longer = length[1] > length[0] ? 1 : 0;
+  if (length[longer] > most_aspect * length[1 - longer] && depth < most_bisections)
+    return append_halves(request, cell, longer, nearest, depth, nodes);
   const Distortion metric = distortion(request, cell, nearest.jet);
   const bool is_even = metric.ratio <= most_distortion && polar.most_points_on_a_line() <= most_points;
   if (!is_even && metric.change >= least_change && depth < most_bisections)

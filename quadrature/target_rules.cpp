@@ -7,6 +7,9 @@
 #include <deque>
 #include <mutex>
 
+#include <fmt/format.h>
+
+#include "geometry/errors.h"
 #include "quadrature/cut_region.h"
 #include "quadrature/element_jet.h"
 #include "quadrature/element_shape.h"
@@ -23,7 +26,6 @@ namespace {
 constexpr int most_kept_order = 24;
 /// On a cut element n nodes are exact for polynomials of degree n - 1 instead of 2 n - 1.
 constexpr int nodes_per_order_when_cut = 2;
-constexpr int most_kept_points = most_kept_order * nodes_per_order_when_cut;
 /// Far targets are sorted by distance from the centre of the element's sphere, in units of its radius.
 constexpr std::array<double, 9> far_levels{1.35, 1.6, 2.0, 2.6, 3.5, 5.0, 8.0, 14.0, 30.0};
 
@@ -76,7 +78,7 @@ void set_tensor(const std::array<int, Dim - 1>& orders, NodeBuffer<Dim>& nodes) 
 template <int Dim>
 int number_of(const std::array<int, Dim - 1>& orders) {
   int number = orders[0] - 1;
-  if constexpr (Dim == 3) number += most_kept_points * (orders[1] - 1);
+  if constexpr (Dim == 3) number += max_gauss_points * (orders[1] - 1);
   return number;
 }
 
@@ -136,20 +138,23 @@ struct TargetRules<Dim>::State {
     });
   }
 
-  /// Of a target at the far end of the level's range, beyond the end of a parameter line: nowhere else can the
+  /// Of a target so far from the element's sphere, beyond the end of a parameter line: nowhere else can the
   /// singularity's ellipse be smaller.
-  void set_far_orders(ElementState<Dim>& element) const {
-    for (std::size_t level = 0; level < far_levels.size(); ++level) {
-      const double gap = (far_levels[level] - 1.0) * element.shape.radius;
-      for (std::size_t d = 0; d < Dim - 1; ++d) {
-        const double half = std::max(element.shape.half_length[d], 1e-12 * element.shape.radius);
-        const Growth& growth = element.shape.growth[d];
-        const double log_rho = std::acosh(1.0 + gap / half);
-        const int points = gauss_points(SinhMap(), log_rho, options.tolerance,
-                                        [&](std::complex<double> u) { return growth(log_ellipse(u)); });
-        element.far_orders[level][d] = rounded_order(points);
-      }
+  Orders orders_at(const ElementShape<Dim>& shape, double gap) const {
+    Orders orders{};
+    for (std::size_t d = 0; d < Dim - 1; ++d) {
+      const double half = std::max(shape.half_length[d], 1e-12 * shape.radius);
+      const double log_rho = std::acosh(1.0 + gap / half);
+      const int points = gauss_points(SinhMap(), log_rho, options.tolerance,
+                                      [&](std::complex<double> u) { return shape.growth[d](log_ellipse(u)); });
+      orders[d] = rounded_order(points);
     }
+    return orders;
+  }
+
+  void set_far_orders(ElementState<Dim>& element) const {
+    for (std::size_t level = 0; level < far_levels.size(); ++level)
+      element.far_orders[level] = orders_at(element.shape, (far_levels[level] - 1.0) * element.shape.radius);
   }
 
   static void set_region(const geometry::TrimmedRegion& curves, ElementState<Dim>& element) {
@@ -252,10 +257,18 @@ NodeView<Dim> TargetRules<Dim>::nodes(int element, const Target<Dim>& target, No
 template <int Dim>
 NodeView<Dim> TargetRules<Dim>::far_nodes(int element, double distance) const {
   ElementState<Dim>& state = state_->elements[static_cast<std::size_t>(element)];
-  std::size_t level = far_levels.size() - 1;
-  while (level > 0 && state.shape.radius + distance < far_levels[level] * state.shape.radius) --level;
-  std::array<int, Dim - 1> orders = state.far_orders[level];
-  for (int& order : orders) order = std::min(order, most_kept_order);
+  const double radius = state.shape.radius;
+  constexpr double least_distance = (1.0 - 1e-9) / 3.0;
+  if (!(distance >= least_distance * radius))
+    throw InputError(
+        fmt::format("a rule of element {} was asked for targets {:.3g} away from its sphere of radius "
+                    "{:.3g}; expected a third of the radius at least",
+                    element, distance, radius));
+  std::size_t level = far_levels.size();
+  while (level > 0 && radius + distance < far_levels[level - 1] * radius) --level;
+  typename State::Orders orders = level > 0 ? state.far_orders[level - 1] : state_->orders_at(state.shape, distance);
+  const int most = max_gauss_points / (state.cut ? nodes_per_order_when_cut : 1);
+  for (int& order : orders) order = std::min(order, most);
   return state_->kept(state, orders).view;
 }
 

@@ -60,7 +60,7 @@ struct NodeBuffer {
 };
 
 /// Rules for all elements of a table, which has to outlive them. Far elements are served from kept tensor rules whose
-/// order goes with the distance in each direction; near ones by subdivision and sinh or Telles maps towards the closest
+/// order goes with the distance in each direction; near ones by subdivision and sinh maps towards the closest
 /// point; the target's own by polar (Duffy) maps about its place, in 2D by splitting there and logarithmic rules. Cut
 /// elements: far targets by the moments of their regions, near ones and their own in polar coordinates over the
 /// regions' boundaries (weights of both signs). Decisions depend on ratios of lengths alone, so the unit of length
@@ -82,8 +82,8 @@ class TargetRules {
   /// several threads with different buffers.
   NodeView<Dim> nodes(int element, const Target<Dim>& target, NodeBuffer<Dim>& buffer) const;
 
-  /// The kept rule of an element that serves all targets at least `distance` away from its sphere; at least a third of
-  /// its radius.
+  /// The kept rule of an element that serves all targets at least `distance` away from its sphere. Throws InputError
+  /// for less than a third of its radius: nearer ones need rules of their own.
   NodeView<Dim> far_nodes(int element, double distance) const;
 
   /// A sphere (circle) that holds the element.

@@ -89,4 +89,35 @@ inline std::vector<std::pair<std::string, geometry::ElementTable<3>>> surface_el
   };
 }
 
+/// A bent element of random degrees from 1 to 4, aspect ratio from 1 to 100 and orientation, three of four rational
+/// with weights from 1/4 to 4: uneven in both directions, every point displaced.
+inline geometry::ElementTable<3> random_element(std::mt19937& generator) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::uniform_int_distribution<int> degree(1, 4);
+  const int p = degree(generator);
+  const int q = degree(generator);
+  const double aspect = std::pow(100.0, std::abs(unit(generator)));
+  const double bend = 0.5 * std::abs(unit(generator));
+  const bool rational = unit(generator) > -0.5;
+  const double skew = 0.5 * unit(generator);
+  const auto shifts = [&](int points) {
+    std::vector<Eigen::Vector2d> result;
+    for (int i = 0; i <= points; ++i)
+      result.emplace_back(0.3 / points * unit(generator), std::pow(2.0, unit(generator)));
+    return result;
+  };
+  const std::vector<Eigen::Vector2d> along = shifts(p);
+  const std::vector<Eigen::Vector2d> across = shifts(q);
+  geometry::ElementTable<3> table = surface_element(p, q, [&](double u, double v) {
+    const Eigen::Vector2d& i = along[static_cast<std::size_t>(std::lround(u * p))];
+    const Eigen::Vector2d& j = across[static_cast<std::size_t>(std::lround(v * q))];
+    const double x = aspect * (u + i[0]) + skew * v + 0.3 / q * unit(generator);
+    const double y = v + j[0] + 0.3 / q * unit(generator);
+    const double z = bend * unit(generator);
+    return NetPoint(x, y, z, rational ? i[1] * j[1] * (1.0 + 0.3 / aspect * unit(generator)) : 1.0);
+  });
+  table.elements[0].orientation = unit(generator) > 0.0 ? 1 : -1;
+  return table;
+}
+
 }  // namespace isorim::quadrature::testing

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "geometry/errors.h"
 #include "geometry/shapes/regions.h"
 #include "geometry/shapes/solids.h"
 #include "geometry/shapes/transforms.h"
@@ -180,6 +182,62 @@ TEST(TargetRules, NearTargetsKeepTheTolerance) {
         expect_errors(found, {1e-11, 1e-11 + rounding, 1e-11 + rounding, 1e-10 + 10 * rounding},
                       words(name, target, distance));
       }
+    }
+  }
+}
+
+// None of these was looked at when the rules' constants were chosen.
+TEST(TargetRules, FreshRandomElementsKeepTheTolerance) {
+  constexpr double allowed = 1e-10;
+  std::mt19937 generator(20261122);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (int k = 0; k < 40; ++k) {
+    const ElementTable<3> table = testing::random_element(generator);
+    Point2 place(unit(generator), unit(generator));
+    if (k % 5 == 0) place[k % 2] = std::pow(10.0, -4.0 * unit(generator));
+    const Target<3> own = own_target(table, place);
+    expect_errors(errors(table, own, 1e-12), {allowed, allowed, 0, 0}, words("element " + std::to_string(k), own, 0.0));
+    const double distance = std::pow(10.0, -4.0 + 5.0 * unit(generator));
+    if (k % 7 == 0) place[0] = 0.0;
+    const Target<3> near = near_target(table, place, distance);
+    const double rounding = 1e-15 / distance;
+    expect_errors(errors(table, near, 1e-12),
+                  {allowed, allowed + rounding, allowed + rounding, allowed + 10 * rounding},
+                  words("element " + std::to_string(k), near, distance));
+  }
+}
+
+/// Errors of a kept rule for a target, as errors() has them.
+double far_error(const ElementTable<3>& table, const NodeView<3>& nodes, const Point3& target) {
+  double sum = 0.0;
+  for (std::size_t q = 0; q < nodes.size(); ++q) {
+    const Vector3 d = offset_of(nodes, target, q);
+    sum += nodes.weight[q] / d.squaredNorm();
+  }
+  const auto expected = testing::integrate_by_bisection<3>(
+      table, 0, target, 1,
+      [](const Point2&, const Vector3& d, const Vector3& n, double weight, std::vector<double>& into) {
+        into[0] += weight * n.norm() / d.squaredNorm();
+      });
+  return std::abs(sum / expected[0] - 1.0);
+}
+
+TEST(TargetRules, FarNodesServeAllTargetsBeyondTheirDistance) {
+  std::mt19937 generator(7);
+  for (const double tolerance : {1e-6, 1e-12}) {
+    for (int k = 0; k < 8; ++k) {
+      const ElementTable<3> table = testing::random_element(generator);
+      const TargetRules<3> rules(table, {tolerance, degree});
+      const auto sphere = rules.sphere(0);
+      for (const double distance : {1.0 / 3.0, 0.36, 1.5, 10.0}) {
+        const NodeView<3> nodes = rules.far_nodes(0, distance * sphere.radius);
+        const double away = (1.0 + distance) * sphere.radius;
+        for (const Vector3& direction : {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(-0.6, 0, 0.8)}) {
+          EXPECT_LE(far_error(table, nodes, sphere.centre + away * direction), 10.0 * tolerance)
+              << k << ' ' << distance << ' ' << direction.transpose();
+        }
+      }
+      EXPECT_THROW(rules.far_nodes(0, 0.3 * sphere.radius), InputError);
     }
   }
 }
