@@ -43,15 +43,18 @@ void restrict_columns(Eigen::Ref<Eigen::MatrixXd> columns, Interval part) {
   if (part.last < 1.0) cut_columns<true>(columns, (part.last - part.first) / (1.0 - part.first));
 }
 
+/// Coefficients on the stack.
+using Stacked = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, largest_degree + 1, 1>;
+
 /// Values, first and second derivatives of the Bernstein polynomials of a degree.
 struct BernsteinBasis {
-  Eigen::VectorXd value;
-  Eigen::VectorXd first;
-  Eigen::VectorXd second;
+  Stacked value;
+  Stacked first;
+  Stacked second;
 };
 
-Eigen::VectorXd bernstein(Eigen::Index degree, double t) {
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(degree + 1);
+Stacked bernstein(Eigen::Index degree, double t) {
+  Stacked values = Stacked::Zero(degree + 1);
   values(0) = 1.0;
   for (Eigen::Index p = 1; p <= degree; ++p) {
     for (Eigen::Index i = p; i > 0; --i) values(i) = (1.0 - t) * values(i) + t * values(i - 1);
@@ -60,20 +63,47 @@ Eigen::VectorXd bernstein(Eigen::Index degree, double t) {
   return values;
 }
 
-Eigen::VectorXd derivative_of_lower(const Eigen::VectorXd& lower) {
+Stacked derivative_of_lower(const Stacked& lower) {
   const Eigen::Index degree = lower.size();
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(degree + 1);
+  Stacked values = Stacked::Zero(degree + 1);
   values.head(degree) -= static_cast<double>(degree) * lower;
   values.tail(degree) += static_cast<double>(degree) * lower;
   return values;
 }
 
 BernsteinBasis basis_with_derivatives(Eigen::Index degree, double t) {
-  BernsteinBasis basis{bernstein(degree, t), Eigen::VectorXd::Zero(degree + 1), Eigen::VectorXd::Zero(degree + 1)};
+  BernsteinBasis basis{bernstein(degree, t), Stacked::Zero(degree + 1), Stacked::Zero(degree + 1)};
   if (degree >= 1) basis.first = derivative_of_lower(bernstein(degree - 1, t));
   if (degree >= 2) basis.second = derivative_of_lower(derivative_of_lower(bernstein(degree - 2, t)));
   return basis;
 }
+
+/// The same without second derivatives and without a copy.
+struct BernsteinSlopes {
+  std::array<double, largest_degree + 1> value;
+  std::array<double, largest_degree + 1> first;
+
+  BernsteinSlopes(Eigen::Index degree, double t) {
+    const auto n = static_cast<std::size_t>(degree);
+    value[0] = 1.0;
+    for (std::size_t p = 1; p <= n; ++p) {
+      if (p == n) set_slopes(n);
+      value[p] = t * value[p - 1];
+      for (std::size_t i = p - 1; i > 0; --i) value[i] = (1.0 - t) * value[i] + t * value[i - 1];
+      value[0] *= 1.0 - t;
+    }
+    if (n == 0) first[0] = 0.0;
+  }
+
+ private:
+  /// From the values of the degree below.
+  void set_slopes(std::size_t n) {
+    const auto factor = static_cast<double>(n);
+    first[0] = -factor * value[0];
+    for (std::size_t i = 1; i < n; ++i) first[i] = factor * (value[i - 1] - value[i]);
+    first[n] = factor * value[n - 1];
+  }
+};
 
 // --- Roots ----------------------------------------------------------------------------------------------------
 
@@ -135,26 +165,60 @@ double largest_value(const BernsteinCoefficients& polynomial, double from, doubl
 }  // namespace
 
 double evaluate(const BernsteinCoefficients& polynomial, double t) {
-  Eigen::VectorXd points = polynomial;
-  for (Eigen::Index last = points.size() - 1; last > 0; --last)
-    for (Eigen::Index i = 0; i < last; ++i) points(i) += t * (points(i + 1) - points(i));
-  return points(0);
+  std::array<double, largest_degree + 1> points;
+  const auto count = static_cast<std::size_t>(polynomial.size());
+  std::copy_n(polynomial.data(), count, points.begin());
+  for (std::size_t last = count - 1; last > 0; --last)
+    for (std::size_t i = 0; i < last; ++i) points[i] += t * (points[i + 1] - points[i]);
+  return points[0];
 }
 
 double evaluate(const BernsteinGrid& grid, const Point2& uv) {
-  return bernstein(grid.rows() - 1, uv.x()).dot(grid * bernstein(grid.cols() - 1, uv.y()));
+  const BernsteinSlopes u(grid.rows() - 1, uv.x());
+  const BernsteinSlopes v(grid.cols() - 1, uv.y());
+  double sum = 0.0;
+  const double* coefficient = grid.data();
+  for (std::size_t j = 0; j < static_cast<std::size_t>(grid.cols()); ++j) {
+    double row = 0.0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(grid.rows()); ++i) row += u.value[i] * *coefficient++;
+    sum += v.value[j] * row;
+  }
+  return sum;
+}
+
+GridSlope evaluate_slope(const BernsteinGrid& grid, const Point2& uv) {
+  const BernsteinSlopes u(grid.rows() - 1, uv.x());
+  const BernsteinSlopes v(grid.cols() - 1, uv.y());
+  GridSlope result;
+  const double* coefficient = grid.data();
+  for (std::size_t j = 0; j < static_cast<std::size_t>(grid.cols()); ++j) {
+    double value = 0.0;
+    double along_u = 0.0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(grid.rows()); ++i, ++coefficient) {
+      value += u.value[i] * *coefficient;
+      along_u += u.first[i] * *coefficient;
+    }
+    result.value += v.value[j] * value;
+    result.gradient += Vector2(v.value[j] * along_u, v.first[j] * value);
+  }
+  return result;
 }
 
 GridJet evaluate_jet(const BernsteinGrid& grid, const Point2& uv) {
   const BernsteinBasis u = basis_with_derivatives(grid.rows() - 1, uv.x());
   const BernsteinBasis v = basis_with_derivatives(grid.cols() - 1, uv.y());
-  const Eigen::VectorXd value = grid * v.value;
-  const Eigen::VectorXd first = grid * v.first;
   GridJet jet;
-  jet.value = u.value.dot(value);
-  jet.gradient << u.first.dot(value), u.value.dot(first);
-  const double mixed = u.first.dot(first);
-  jet.hessian << u.second.dot(value), mixed, mixed, u.value.dot(grid * v.second);
+  double mixed = 0.0;
+  for (Eigen::Index j = 0; j < grid.cols(); ++j) {
+    const double value = u.value.dot(grid.col(j));
+    const double first = u.first.dot(grid.col(j));
+    jet.value += v.value(j) * value;
+    jet.gradient += Vector2(v.value(j) * first, v.first(j) * value);
+    jet.hessian(0, 0) += v.value(j) * u.second.dot(grid.col(j));
+    jet.hessian(1, 1) += v.second(j) * value;
+    mixed += v.first(j) * first;
+  }
+  jet.hessian(0, 1) = jet.hessian(1, 0) = mixed;
   return jet;
 }
 

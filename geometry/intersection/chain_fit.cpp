@@ -37,7 +37,8 @@ using Polyline = std::vector<Point2>;
 
 class Fitter {
  public:
-  explicit Fitter(const ElementFunction& function) : function_(function) {}
+  explicit Fitter(const ElementFunction& function)
+      : function_(function), largest_noise_(2e-15 * function.magnitude.maxCoeff()) {}
 
   void append(const Polyline& points, std::vector<Points<2>>& curves) const {
     if (is_graph_over_chord(points)) {
@@ -86,12 +87,13 @@ class Fitter {
     double h = guess;
     double step = 0.0;
     for (int iteration = 0; iteration < 20; ++iteration) {
-      const GridJet jet = evaluate_jet(function_.grid, chord.at(s, h));
+      const GridSlope jet = evaluate_slope(function_.grid, chord.at(s, h));
       step = -jet.value / jet.gradient.dot(chord.normal);
       if (jet.value == 0.0) return h;
       if (!std::isfinite(step) || std::abs(h + step - guess) > reach) return std::nullopt;
       h += step;
-      if (std::abs(step) <= 1e-16 || (iteration > 8 && std::abs(jet.value) <= function_.noise_at(chord.at(s, h))))
+      // Convergence is quadratic: what such a step leaves is far below rounding.
+      if (std::abs(step) <= 1e-12 || (iteration > 8 && std::abs(jet.value) <= function_.noise_at(chord.at(s, h))))
         return h;
     }
     return std::abs(step) <= 1e-12 ? std::optional<double>(h) : std::nullopt;
@@ -135,9 +137,11 @@ class Fitter {
     for (int k = 1; k < samples; ++k) {
       const double s = static_cast<double>(k) / samples;
       const Point2 place = chord.at(s, evaluate(offsets, s));
-      const GridJet jet = evaluate_jet(function_.grid, place);
-      const double noise = 2.0 * function_.noise_at(place);
+      const GridSlope jet = evaluate_slope(function_.grid, place);
       const double slope = std::abs(jet.gradient.dot(chord.normal));
+      if (slope > 0.0 && std::abs(jet.value) <= displacement_tolerance * slope) continue;
+      // Far from zero a bound of the noise will do.
+      const double noise = std::abs(jet.value) > largest_noise_ ? largest_noise_ : 2.0 * function_.noise_at(place);
       if (!(slope > 0.0)) return std::abs(jet.value) <= noise ? Verdict::met : Verdict::far;
       const double allowed = std::max(displacement_tolerance, noise / slope);
       worst = std::max(worst, std::abs(jet.value) / slope / allowed);
@@ -155,6 +159,7 @@ class Fitter {
   }
 
   const ElementFunction& function_;
+  double largest_noise_;
 };
 
 }  // namespace

@@ -326,6 +326,20 @@ FaceCuts cut_face(const CuttableFace& face, const ImplicitSurface& implicit, con
   return result;
 }
 
+KeptPart kept_part(const CuttableFace& face, const ImplicitSurface& implicit, const TraceOptions& options) {
+  FaceCutter cutter(face, implicit, options);
+  const int sign = cutter.sign_everywhere();
+  KeptPart result;
+  if (sign > 0) return result;
+  result.is_whole = sign < 0;
+  if (sign < 0) return result;
+  FaceCutter::Kept kept = cutter.keep();
+  for (FaceCuts::Cut& cut : kept.cuts) result.cuts.push_back(std::move(cut.curve));
+  result.is_whole = !kept.is_reduced && cutter.flat_elements() == 0;
+  if (!result.is_whole) result.curves = std::move(kept.curves);
+  return result;
+}
+
 ClippedFace clip_face(const SurfaceShape& shape, const ImplicitSurface& implicit, const TraceOptions& options) {
   const CuttableFace face(shape);
   FaceCutter cutter(face, implicit, options);

@@ -74,6 +74,21 @@ struct FaceCuts {
 /// refuses.
 FaceCuts cut_face(const CuttableFace& face, const ImplicitSurface& implicit, const TraceOptions& options);
 
+/// The part of a face on the side where F is negative, by the curves that bound it.
+struct KeptPart {
+  /// All of the face; then `curves` is empty.
+  bool is_whole = false;
+  /// In the surface's parameters, over [0, 1], the part on the left of each, in no order: the sum over them of a line
+  /// integral is one round the part. None if nothing is left.
+  std::vector<NurbsCurve<2>> curves;
+  /// Those edges of the part along which F vanishes.
+  std::vector<NurbsCurve<2>> cuts;
+};
+
+/// For integrals over what is left of a face; clip_face() makes a face of it. Throws GeometryError, with the
+/// parameters, for singular points that ImplicitTrace refuses.
+KeptPart kept_part(const CuttableFace& face, const ImplicitSurface& implicit, const TraceOptions& options);
+
 /// What is left of a face on the side where F is negative.
 struct ClippedFace {
   /// The face as it was if nothing is cut off; nothing if nothing is left.

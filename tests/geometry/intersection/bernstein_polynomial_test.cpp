@@ -113,5 +113,20 @@ TEST(FitCurve, MeetsSmoothCurvesToRounding) {
     }
 }
 
+TEST(BernsteinPolynomial, SlopesAreThoseOfTheJet) {
+  for (const auto& [p, q] : {std::pair{0, 0}, std::pair{1, 0}, std::pair{3, 2}, std::pair{7, 11}}) {
+    BernsteinGrid grid(p + 1, q + 1);
+    for (Eigen::Index i = 0; i < grid.size(); ++i) grid(i) = std::sin(1.0 + 2.7 * static_cast<double>(i));
+    for (const Point2& at : {Point2(0.3, 0.8), Point2(0.0, 1.0), Point2(1.1, -0.2)}) {
+      const GridJet jet = evaluate_jet(grid, at);
+      const GridSlope slope = evaluate_slope(grid, at);
+      const double scale = 1.0 + std::abs(jet.value) + jet.gradient.norm();
+      EXPECT_NEAR(slope.value, jet.value, 1e-13 * scale);
+      EXPECT_LT((slope.gradient - jet.gradient).norm(), 1e-13 * scale);
+      EXPECT_NEAR(evaluate(grid, at), jet.value, 1e-13 * scale);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace isorim::geometry
