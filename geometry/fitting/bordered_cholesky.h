@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -24,14 +25,21 @@ class BorderedCholesky {
   Eigen::VectorXd solve(Eigen::VectorXd rhs) const;
 
  private:
-  const double* place(int i, int j) const;
+  const double* place(int i, int j) const {
+    if (i < j) std::swap(i, j);
+    return column(j) + (i < band_rows_ ? i - j : half_width_ + 1 + i - band_rows_);
+  }
   double* place(int i, int j) { return const_cast<double*>(static_cast<const BorderedCholesky*>(this)->place(i, j)); }
-  /// The first column of row i that is stored.
-  int first_column(int i) const;
+  const double* column(int j) const { return values_.data() + static_cast<std::ptrdiff_t>(j) * stride_; }
+  double* column(int j) { return values_.data() + static_cast<std::ptrdiff_t>(j) * stride_; }
+  int border() const { return size_ - band_rows_; }
 
   int size_;
   int half_width_;
   int band_rows_;
+  int stride_;
+  /// Columns one after the other: the diagonal, half_width elements below it, and the border's rows. Columns of the
+  /// border use the latter only.
   std::vector<double> values_;
 };
 

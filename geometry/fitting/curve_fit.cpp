@@ -18,47 +18,10 @@ namespace isorim::geometry {
 namespace {
 
 template <int Dim>
-[[noreturn]] void refuse_knots(int control_points) {
-  throw GeometryError(fmt::format(
-      "curve fit: on these knots the points do not determine all {} control points; give fewer control points, other "
-      "knots or some fairness",
-      control_points));
-}
-
-template <int Dim>
-FitState<Dim> given_knots(const FitFrame<Dim>& frame) {
-  const std::vector<double>& breakpoints = frame.options().breakpoints;
-  if (breakpoints.size() < 2 || breakpoints.front() != 0.0 || breakpoints.back() != 1.0)
-    throw GeometryError("curve fit: breakpoints must run from 0 to 1");
-  if (!frame.prepared().corners.empty()) throw GeometryError("curve fit: corners are looked for, but knots are given");
-  FitState<Dim> state;
-  state.breakpoints = breakpoints;
-  state.parameters = frame.prepared().parameters;
-  return state;
-}
-
-/// Knots by the rule and the first control points.
-template <int Dim>
-FitState<Dim> first_fit(const FitFrame<Dim>& frame, int control_points, const Fairness& fairness) {
-  const FitKnots rule = frame.options().knots;
-  if (rule != FitKnots::automatic) {
-    FitState<Dim> state = rule == FitKnots::given ? given_knots(frame) : frame.start(rule, control_points);
-    if (!frame.solve(state, fairness)) refuse_knots<Dim>(control_points);
-    return state;
-  }
-  const bool interpolates = control_points == frame.most_control_points();
-  for (const FitKnots tried : {interpolates ? FitKnots::averaging : FitKnots::uniform, FitKnots::piegl_tiller}) {
-    FitState<Dim> state = frame.start(tried, control_points);
-    if (frame.solve(state, fairness)) return state;
-  }
-  refuse_knots<Dim>(control_points);
-}
-
-template <int Dim>
 FitState<Dim> fixed_knot_fit(const FitFrame<Dim>& frame, int control_points) {
   constexpr int steps = 2;
   const Fairness fairness{frame.options().fairness.value_or(0.0), frame.options().fairness_derivative};
-  FitState<Dim> state = first_fit(frame, control_points, fairness);
+  FitState<Dim> state = frame.first_fit(control_points, fairness);
   for (int i = 0; i < frame.options().parameter_corrections; ++i) {
     FitState<Dim> next = state;
     frame.correct_parameters(next, steps);

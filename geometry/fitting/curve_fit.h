@@ -25,10 +25,10 @@ enum class FitMethod {
 /// How a parameter in [0, 1] is given to each point (Piegl & Tiller, The NURBS Book, 2nd ed., eqs. 9.3 to 9.6).
 enum class FitParameters { chord_length, centripetal, uniform };
 
-/// How the inner knots are chosen; n is the number of distinct control points.
+/// How the inner knots are chosen. Method free moves them only if they are automatic; else parameters alone.
 enum class FitKnots {
   /// Averaging for interpolation; else uniform, or Piegl and Tiller's rule where uniform knots would leave a control
-  /// point without data. Method free: moved to where the error is.
+  /// point without data. Method free: where the error is.
   automatic,
   /// Equal spans.
   uniform,
@@ -82,7 +82,8 @@ struct CurveFitOptions {
 
   FitParameters parameters = FitParameters::chord_length;
   FitKnots knots = FitKnots::automatic;
-  /// For FitKnots::given: increasing from 0 to 1, inner ones with the multiplicity given by repetition.
+  /// For FitKnots::given: increasing from 0 to 1, inner ones with the multiplicity given by repetition; corners p
+  /// times.
   std::vector<double> breakpoints;
   FitWeights weights = FitWeights::automatic;
   /// For FitWeights::given: positive, one a point; their scale does not matter.
@@ -92,18 +93,18 @@ struct CurveFitOptions {
   /// (Hoschek, Intrinsic parametrization for approximation, CAGD 5, 1988).
   int parameter_corrections = 0;
 
-  /// Method free: steps in which knots and parameters are improved together (Levenberg and Marquardt). 0 leaves the
-  /// knots where the errors had them put one by one; each step lowers the distances and costs about as much as ten
-  /// linear fits.
-  int knot_steps = 4;
+  /// Method free: steps in which knots, parameters and control points are improved together (Levenberg and Marquardt).
+  /// 0 leaves the knots where the errors had them put; each step lowers the distances, the first ones most, and costs
+  /// about as much as three linear fits.
+  int knot_steps = 2;
 
   /// The factor mu >= 0 of the fairness term mu * integral of |C^(fairness_derivative)|^2 over [0, 1], which is added
   /// to the mean weighted squared distance. If it is absent, method free chooses mu by fairness_share, and the other
   /// methods take 0.
   std::optional<double> fairness;
-  /// Method free: mu is such that the fairness term is this share of the mean squared distance. The root mean square
-  /// distance then grows by no more than the factor sqrt(1 + share). 0 or more.
-  double fairness_share = 0.1;
+  /// Method free: mu is such that the fairness term is this share of the mean squared distance before the steps. On the
+  /// same knots the root mean square distance then grows by no more than the factor sqrt(1 + share). 0 or more.
+  double fairness_share = 0.2;
   /// 2 or 3.
   int fairness_derivative = 3;
 

@@ -180,7 +180,42 @@ void shift_parameters(double shift, std::vector<double>& parameters) {
 }  // namespace
 
 template <int Dim>
+FitState<Dim> FitFrame<Dim>::start_on_given_knots() const {
+  const std::vector<double>& breakpoints = options_.breakpoints;
+  if (breakpoints.size() < 2 || breakpoints.front() != 0.0 || breakpoints.back() != 1.0)
+    throw GeometryError("curve fit: breakpoints must run from 0 to 1");
+  for (const double corner : corner_parameters())
+    if (std::count(breakpoints.begin(), breakpoints.end(), corner) != degree())
+      throw GeometryError(
+          fmt::format("curve fit: knots are given, but the corner at parameter {} is not among them {} times; give "
+                      "knots that suit the corners, or look for none",
+                      corner, degree()));
+  FitState<Dim> state;
+  state.breakpoints = breakpoints;
+  state.parameters = prepared_.parameters;
+  return state;
+}
+
+template <int Dim>
+FitState<Dim> FitFrame<Dim>::first_fit(int control_points, const Fairness& fairness) const {
+  std::vector<FitKnots> rules{options_.knots};
+  if (options_.knots == FitKnots::automatic) {
+    const bool interpolates = control_points == most_control_points();
+    rules = {interpolates ? FitKnots::averaging : FitKnots::uniform, FitKnots::piegl_tiller};
+  }
+  for (const FitKnots rule : rules) {
+    FitState<Dim> state = start(rule, control_points);
+    if (solve(state, fairness)) return state;
+  }
+  throw GeometryError(fmt::format(
+      "curve fit: on these knots the points do not determine all {} control points; give fewer control points, other "
+      "knots or some fairness",
+      control_points));
+}
+
+template <int Dim>
 FitState<Dim> FitFrame<Dim>::start(FitKnots rule, int control_points) const {
+  if (rule == FitKnots::given) return start_on_given_knots();
   FitState<Dim> state;
   state.parameters = prepared_.parameters;
   const std::vector<double>& parameters = prepared_.parameters;
@@ -239,6 +274,12 @@ FitSpace FitFrame<Dim>::space(const std::vector<double>& breakpoints) const {
 }
 
 template <int Dim>
+double FitFrame<Dim>::into_domain(double u) const {
+  if (options_.closed) u -= std::floor(u);
+  return std::clamp(u, 0.0, 1.0);
+}
+
+template <int Dim>
 FitConstraints<Dim> FitFrame<Dim>::constraints(const KnotVector& knots) const {
   FitConstraints<Dim> result;
   if (is_periodic()) return result;
@@ -287,15 +328,30 @@ SegmentedCurve<Dim> FitFrame<Dim>::curve(const FitState<Dim>& state) const {
 }
 
 template <int Dim>
+void FitFrame<Dim>::measure(FitState<Dim>& state) const {
+  const SegmentedCurve<Dim> curve = this->curve(state);
+  const FitData<Dim>& data = prepared_.data;
+  double sum = 0.0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const double squared =
+        (curve.jet(state.parameters[i]).point - data.points.col(static_cast<Eigen::Index>(i))).squaredNorm();
+    sum += data.weights[i] * squared;
+    largest = std::max(largest, squared);
+  }
+  state.max_distance = std::sqrt(largest);
+  state.mean_squared = sum / static_cast<double>(data.size());
+}
+
+template <int Dim>
 void FitFrame<Dim>::correct_parameters(FitState<Dim>& state, int steps) const {
   const SegmentedCurve<Dim> curve = this->curve(state);
   const FitData<Dim>& data = prepared_.data;
   double sum = 0.0;
   double largest = 0.0;
   for (std::size_t i = 0; i < data.size(); ++i) {
-    const Point<Dim> point = data.points.col(static_cast<Eigen::Index>(i));
-    state.parameters[i] = curve.follow(point, state.parameters[i], steps);
-    const double squared = (curve.jet(state.parameters[i]).point - point).squaredNorm();
+    const auto [u, squared] = curve.follow(data.points.col(static_cast<Eigen::Index>(i)), state.parameters[i], steps);
+    state.parameters[i] = u;
     sum += data.weights[i] * squared;
     largest = std::max(largest, squared);
   }

@@ -22,6 +22,8 @@ struct FitState {
   /// Of the points C(parameter), not weighted.
   double max_distance = 0.0;
   int iterations = 0;
+  /// Of method free.
+  Fairness fairness{};
 };
 
 /// What stays the same while a curve is fitted: points, degree, corners and what the ends must meet.
@@ -51,22 +53,34 @@ class FitFrame {
   int control_points(const std::vector<double>& breakpoints) const;
   int free_knots(int control_points) const;
 
+  /// Whether knots are looked for, not given by the options or by a rule.
+  bool moves_knots() const { return options_.knots == FitKnots::automatic; }
   /// Whether a knot inside the domain may be moved: no corner.
   bool is_free_knot(double u) const;
-  /// Breakpoints by a rule and the parameters that go with them: those of the prepared points, moved by one constant
-  /// if the rule puts the first breakpoint elsewhere.
+  /// Breakpoints by a rule other than automatic, and the parameters that go with them: those of the prepared points,
+  /// moved by one constant if the rule puts the first breakpoint elsewhere. Throws GeometryError for given ones that do
+  /// not run from 0 to 1 or do not have the corners among them.
   FitState<Dim> start(FitKnots rule, int control_points) const;
+  /// The same with the rule of the options, and the control points. Automatic rules go from the best to the safest.
+  /// Throws GeometryError if the data do not determine the control points.
+  FitState<Dim> first_fit(int control_points, const Fairness& fairness) const;
   FitSpace space(const std::vector<double>& breakpoints) const;
+  /// What corners and ends demand.
+  FitConstraints<Dim> constraints(const KnotVector& knots) const;
+  /// A parameter that has left [0, 1] (by less than 1): round the closed curve, or back to the end of an open one.
+  double into_domain(double u) const;
 
   /// Solves for the control points; false if the data do not determine them (the state is then left as it was).
   bool solve(FitState<Dim>& state, const Fairness& fairness) const;
   SegmentedCurve<Dim> curve(const FitState<Dim>& state) const;
+  /// Measures the distances at the parameters.
+  void measure(FitState<Dim>& state) const;
   /// Moves every parameter towards the nearest point of the curve, and measures the distances there.
   void correct_parameters(FitState<Dim>& state, int steps) const;
 
  private:
-  FitConstraints<Dim> constraints(const KnotVector& knots) const;
   std::vector<double> corner_parameters() const;
+  FitState<Dim> start_on_given_knots() const;
 
   CurveFitOptions<Dim> options_;
   PreparedPoints<Dim> prepared_;

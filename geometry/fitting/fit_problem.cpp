@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <vector>
 
 #include "geometry/fitting/derivative_row.h"
+#include "geometry/fitting/gauss_points.h"
+#include "geometry/fitting/span_order.h"
 #include "geometry/spline/local_basis.h"
 
 namespace isorim::geometry {
@@ -13,62 +15,6 @@ namespace isorim::geometry {
 namespace {
 
 constexpr std::size_t capacity = KnotVector::max_degree + 1;
-
-struct GaussPoint {
-  double node = 0.0;
-  double weight = 0.0;
-};
-
-/// Gauss-Legendre nodes and weights on [0, 1], by Newton's method on the Legendre polynomials.
-std::vector<GaussPoint> gauss_rule(int count) {
-  std::vector<GaussPoint> rule(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) {
-    double x = std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5));
-    double slope = 1.0;
-    for (int step = 0; step < 20; ++step) {
-      double before = 1.0;
-      double value = x;
-      for (int k = 2; k <= count; ++k) {
-        const double next = ((2 * k - 1) * x * value - (k - 1) * before) / k;
-        before = value;
-        value = next;
-      }
-      slope = count * (x * value - before) / (x * x - 1.0);
-      const double change = value / slope;
-      x -= change;
-      if (std::abs(change) < 1e-16) break;
-    }
-    rule[static_cast<std::size_t>(i)] = {0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope)};
-  }
-  return rule;
-}
-
-/// The indices of the data in the order of their spans (a counting sort); offsets[s] is where span s begins.
-struct SpanOrder {
-  std::vector<int> order;
-  std::vector<int> offsets;
-
-  std::span<const int> of(int span) const {
-    const std::size_t s = static_cast<std::size_t>(span);
-    return std::span<const int>(order).subspan(static_cast<std::size_t>(offsets[s]),
-                                               static_cast<std::size_t>(offsets[s + 1] - offsets[s]));
-  }
-};
-
-SpanOrder sort_by_span(const KnotVector& knots, std::span<const double> parameters) {
-  const std::size_t spans = static_cast<std::size_t>(knots.basis_count() - knots.degree());
-  std::vector<int> span_of(parameters.size());
-  SpanOrder sorted{std::vector<int>(parameters.size()), std::vector<int>(spans + 1, 0)};
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    span_of[i] = knots.find_span(parameters[i]) - knots.degree();
-    ++sorted.offsets[static_cast<std::size_t>(span_of[i]) + 1];
-  }
-  for (std::size_t s = 0; s < spans; ++s) sorted.offsets[s + 1] += sorted.offsets[s];
-  std::vector<int> next = sorted.offsets;
-  for (std::size_t i = 0; i < parameters.size(); ++i)
-    sorted.order[static_cast<std::size_t>(next[static_cast<std::size_t>(span_of[i])]++)] = static_cast<int>(i);
-  return sorted;
-}
 
 /// The control point next to a natural end as the mean of its neighbours: c1 = outer * c0 + inner * c2.
 struct NaturalEnd {
@@ -204,9 +150,9 @@ Points<Dim> solve_fit(const FitSpace& space, const FitData<Dim>& data, std::span
                       const Fairness& fairness, const FitConstraints<Dim>& constraints) {
   const KnotVector& knots = space.knots;
   const int p = knots.degree();
-  const SpanOrder sorted = sort_by_span(knots, parameters);
+  const SpanOrder sorted(knots, parameters);
   std::vector<GaussPoint> rule;
-  if (fairness.mu > 0.0 && fairness.derivative <= p) rule = gauss_rule(p - fairness.derivative + 1);
+  if (fairness.mu > 0.0 && fairness.derivative <= p) rule = gauss_points(p - fairness.derivative + 1);
   ConstrainedRows<Dim> rows(space, constraints);
   for (int span = p; span < knots.basis_count(); ++span) {
     if (!(knots[span] < knots[span + 1])) continue;

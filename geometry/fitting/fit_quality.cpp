@@ -11,36 +11,11 @@
 #include "geometry/fitting/curve_shape.h"
 #include "geometry/fitting/foot_points.h"
 #include "geometry/intersection/bernstein_polynomial.h"
+#include "geometry/spline/kronrod_rule.h"
 
 namespace isorim::geometry {
 
 namespace {
-
-/// The nodes of the Gauss-Kronrod pair of 7 and 15 points on [-1, 1]; Gauss weight 0 where the 7-point rule has none.
-struct KronrodNode {
-  double node;
-  double kronrod;
-  double gauss;
-};
-
-constexpr std::array<KronrodNode, 15> kronrod_nodes = [] {
-  constexpr std::array<KronrodNode, 8> half{{
-      {0.0, 0.20948214108472782801, 0.41795918367346938776},
-      {0.2077849550078984676, 0.20443294007529889241, 0.0},
-      {0.40584515137739716691, 0.19035057806478540991, 0.38183005050511894495},
-      {0.58608723546769113029, 0.16900472663926790283, 0.0},
-      {0.74153118559939443986, 0.14065325971552591875, 0.2797053914892766679},
-      {0.86486442335976907279, 0.10479001032225018384, 0.0},
-      {0.94910791234275852453, 0.063092092629978553291, 0.12948496616886969327},
-      {0.99145537112081263921, 0.022935322010529224964, 0.0},
-  }};
-  std::array<KronrodNode, 15> nodes{};
-  for (std::size_t i = 0; i < 8; ++i) {
-    nodes[7 + i] = half[i];
-    nodes[7 - i] = {-half[i].node, half[i].kronrod, half[i].gauss};
-  }
-  return nodes;
-}();
 
 /// Length and integral of the squared curvature over a part of a curve, and the error of the latter.
 struct Bending {
@@ -50,32 +25,36 @@ struct Bending {
 };
 
 template <int Dim>
-Bending bending(const SegmentedCurve<Dim>& curve, Interval part) {
+Bending bending(const SegmentedCurve<Dim>& curve, int segment, Interval part) {
   Bending sum;
   double gauss = 0.0;
   const double half = 0.5 * part.length();
-  for (const KronrodNode& rule : kronrod_nodes) {
-    const CurveJet<Dim> jet = curve.jet(part.middle() + half * rule.node);
+  const auto add = [&](double x, const KronrodNode& rule) {
+    const CurveJet<Dim> jet = curve.jet_on(segment, part.middle() + half * x);
     const double metric = jet.du.squaredNorm();
-    if (!(metric > 0.0)) continue;
+    if (!(metric > 0.0)) return;
     const double speed = std::sqrt(metric);
     const double along = jet.du.dot(jet.duu);
     const double bent = std::max(0.0, jet.duu.squaredNorm() - along * along / metric) / (metric * speed);
-    sum.length += half * rule.kronrod * speed;
-    sum.squared_curvature += half * rule.kronrod * bent;
-    gauss += half * rule.gauss * bent;
+    sum.length += half * rule.kronrod_weight * speed;
+    sum.squared_curvature += half * rule.kronrod_weight * bent;
+    gauss += half * rule.gauss_weight * bent;
+  };
+  for (const KronrodNode& rule : kronrod_nodes) {
+    add(rule.node, rule);
+    if (rule.node > 0.0) add(-rule.node, rule);
   }
   sum.error = std::abs(sum.squared_curvature - gauss);
   return sum;
 }
 
 template <int Dim>
-Bending adaptive_bending(const SegmentedCurve<Dim>& curve, Interval part, int depth) {
+Bending adaptive_bending(const SegmentedCurve<Dim>& curve, int segment, Interval part, int depth) {
   constexpr double tolerance = 1e-6;
-  const Bending whole = bending(curve, part);
+  const Bending whole = bending(curve, segment, part);
   if (depth == 0 || whole.error <= tolerance * whole.squared_curvature) return whole;
-  const Bending left = adaptive_bending(curve, {part.first, part.middle()}, depth - 1);
-  const Bending right = adaptive_bending(curve, {part.middle(), part.last}, depth - 1);
+  const Bending left = adaptive_bending(curve, segment, {part.first, part.middle()}, depth - 1);
+  const Bending right = adaptive_bending(curve, segment, {part.middle(), part.last}, depth - 1);
   return {left.length + right.length, left.squared_curvature + right.squared_curvature, left.error + right.error};
 }
 
@@ -123,72 +102,94 @@ bool changes_once(const NumeratorCoefficients& numerator, double noise) {
   return changes == 1;
 }
 
-/// The root of a polynomial that changes its sign once on [0, 1], by bisection and secants (Illinois method).
+/// The root of a polynomial that changes its sign once on [0, 1]: Newton's method, bisection where it leaves the
+/// bracket.
 double only_root(const NumeratorCoefficients& numerator) {
   constexpr std::size_t capacity = 2 * KnotVector::max_degree;
-  const auto value = [&](double t) {
-    std::array<double, capacity> net;
-    std::copy_n(numerator.data(), numerator.size(), net.begin());
-    for (std::size_t count = static_cast<std::size_t>(numerator.size()) - 1; count > 0; --count)
-      for (std::size_t i = 0; i < count; ++i) net[i] += t * (net[i + 1] - net[i]);
-    return net[0];
-  };
+  constexpr int most_steps = 60;
+  const std::size_t n = static_cast<std::size_t>(numerator.size()) - 1;
+  const double first = numerator[0];
   double low = 0.0;
   double high = 1.0;
-  double at_low = numerator[0];
-  double at_high = numerator[numerator.size() - 1];
-  for (int i = 0; i < 100 && high - low > 1e-15; ++i) {
-    const double t = low + (high - low) * at_low / (at_low - at_high);
-    const double at = value(t);
-    if (at == 0.0 || t <= low || t >= high) return t;
-    if ((at > 0.0) == (at_high > 0.0)) {
-      high = t;
-      at_high = at;
-      at_low *= 0.5;
-    } else {
-      low = t;
-      at_low = at;
-      at_high *= 0.5;
+  double t = first / (first - numerator[numerator.size() - 1]);
+  for (int i = 0; i < most_steps; ++i) {
+    std::array<double, capacity> net;
+    std::copy_n(numerator.data(), n + 1, net.begin());
+    for (std::size_t count = n; count > 1; --count)
+      for (std::size_t k = 0; k < count; ++k) net[k] += t * (net[k + 1] - net[k]);
+    const double value = net[0] + t * (net[1] - net[0]);
+    if (value == 0.0) return t;
+    ((value > 0.0) == (first > 0.0) ? low : high) = t;
+    const double newton = t - value / (static_cast<double>(n) * (net[1] - net[0]));
+    const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+    if (std::abs(next - t) <= 1e-15) return next;
+    t = next;
+  }
+  return t;
+}
+
+/// Places where a function changes its sign, put together from pieces in their order.
+class SignChanges {
+ public:
+  /// From u on the sign is this one; 0: not known.
+  void append(double u, int sign) {
+    if (sign == 0) return;
+    if (last_ == -sign) places_.push_back(u);
+    last_ = sign;
+  }
+  /// A polynomial over an interval, known to within `noise`. What its coefficients do not settle is halved, and left to
+  /// a sign chart in the end.
+  void append(const NumeratorCoefficients& numerator, Interval domain, double noise, int depth);
+
+  const std::vector<double>& places() const { return places_; }
+
+ private:
+  std::vector<double> places_;
+  int last_ = 0;
+};
+
+void SignChanges::append(const NumeratorCoefficients& numerator, Interval domain, double noise, int depth) {
+  const int sign = numerator[0] > 0.0 ? 1 : -1;
+  if (numerator.minCoeff() > noise || numerator.maxCoeff() < -noise) return append(domain.first, sign);
+  if (changes_once(numerator, noise)) {
+    append(domain.first, sign);
+    return append(domain.first + only_root(numerator) * domain.length(), -sign);
+  }
+  if (depth > 0) {
+    NumeratorCoefficients left = numerator;
+    NumeratorCoefficients right = numerator;
+    const Eigen::Index p = numerator.size() - 1;
+    for (Eigen::Index count = p; count > 0; --count) {
+      right.head(count) = 0.5 * (right.head(count) + right.segment(1, count));
+      left[p - count + 1] = right[0];
+    }
+    if (std::abs(left[p]) > noise) {
+      append(left, {domain.first, domain.middle()}, noise, depth - 1);
+      return append(right, {domain.middle(), domain.last}, noise, depth - 1);
     }
   }
-  return 0.5 * (low + high);
+  const SignChart chart = sign_chart(numerator, noise);
+  append(domain.first, chart.signs.front());
+  for (std::size_t k = 0; k < chart.roots.size(); ++k)
+    append(domain.first + chart.roots[k] * domain.length(), chart.signs[k + 1]);
 }
 
 /// Where the curvature changes its sign inside the domain.
 std::vector<double> find_sign_changes(const SegmentedCurve<2>& curve) {
   constexpr double rounding = 1e-12;
-  std::vector<double> changes;
-  int last = 0;
-  const auto append = [&](double u, int sign) {
-    if (sign == 0) return;
-    if (last == -sign) changes.push_back(u);
-    last = sign;
-  };
+  constexpr int deepest = 4;
   const int degree = static_cast<int>(curve.segment_points(0).cols()) - 1;
-  if (degree < 2) return changes;
+  if (degree < 2) return {};
+  SignChanges changes;
   const ProductBinomials binomials_of_product(degree);
   for (int i = 0; i < curve.segment_count(); ++i) {
     const Eigen::Map<const Points<2>> points = curve.segment_points(i);
-    const Interval domain = curve.segment_domain(i);
     const Eigen::Index p = points.cols() - 1;
     const double size = (points.rightCols(p) - points.leftCols(p)).cwiseAbs().maxCoeff();
-    const double noise = rounding * size * size;
-    const NumeratorCoefficients numerator = curvature_numerator(points, binomials_of_product);
-    if (numerator.minCoeff() > noise || numerator.maxCoeff() < -noise) {
-      append(domain.first, numerator[0] > 0.0 ? 1 : -1);
-      continue;
-    }
-    if (changes_once(numerator, noise)) {
-      append(domain.first, numerator[0] > 0.0 ? 1 : -1);
-      append(domain.first + only_root(numerator) * domain.length(), numerator[0] > 0.0 ? -1 : 1);
-      continue;
-    }
-    const SignChart chart = sign_chart(numerator, noise);
-    append(domain.first, chart.signs.front());
-    for (std::size_t k = 0; k < chart.roots.size(); ++k)
-      append(domain.first + chart.roots[k] * domain.length(), chart.signs[k + 1]);
+    changes.append(curvature_numerator(points, binomials_of_product), curve.segment_domain(i), rounding * size * size,
+                   deepest);
   }
-  return changes;
+  return changes.places();
 }
 
 /// The largest distance of the part [first, last] from its chord.
@@ -212,7 +213,7 @@ double bending_energy(const SegmentedCurve<Dim>& curve) {
   constexpr int deepest = 12;
   Bending sum;
   for (int i = 0; i < curve.segment_count(); ++i) {
-    const Bending part = adaptive_bending(curve, curve.segment_domain(i), deepest);
+    const Bending part = adaptive_bending(curve, i, curve.segment_domain(i), deepest);
     sum.length += part.length;
     sum.squared_curvature += part.squared_curvature;
   }

@@ -18,21 +18,27 @@ constexpr int capacity = KnotVector::max_degree + 1;
 template <int Dim>
 using StackNet = Eigen::Matrix<double, Dim, Eigen::Dynamic, Eigen::ColMajor, Dim, capacity>;
 
-/// De Casteljau's algorithm; derivatives with respect to s in [0, 1].
-template <int Dim>
-CurveJet<Dim> bezier_jet(const double* points, int degree, double s) {
-  std::array<Vector<Dim>, capacity> net;
-  for (int i = 0; i <= degree; ++i) net[static_cast<std::size_t>(i)] = Eigen::Map<const Vector<Dim>>(points + Dim * i);
+/// De Casteljau's algorithm; derivatives with respect to s in [0, 1]. Degree: 0 if it is not known when compiled.
+template <int Dim, int Degree>
+CurveJet<Dim> bezier_jet_of(const double* points, int degree, double s) {
+  const int p = Degree > 0 ? Degree : degree;
+  std::array<Vector<Dim>, (Degree > 0 ? Degree + 1 : capacity)> net;
+  for (int i = 0; i <= p; ++i) net[static_cast<std::size_t>(i)] = Eigen::Map<const Vector<Dim>>(points + Dim * i);
   CurveJet<Dim> jet;
   jet.du.setZero();
   jet.duu.setZero();
-  for (int count = degree; count > 0; --count) {
-    if (count == 2) jet.duu = degree * (degree - 1) * (net[0] - 2.0 * net[1] + net[2]);
-    if (count == 1) jet.du = degree * (net[1] - net[0]);
+  for (int count = p; count > 0; --count) {
+    if (count == 2) jet.duu = p * (p - 1) * (net[0] - 2.0 * net[1] + net[2]);
+    if (count == 1) jet.du = p * (net[1] - net[0]);
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) net[i] += s * (net[i + 1] - net[i]);
   }
   jet.point = net[0];
   return jet;
+}
+
+template <int Dim>
+CurveJet<Dim> bezier_jet(const double* points, int degree, double s) {
+  return degree == 3 ? bezier_jet_of<Dim, 3>(points, degree, s) : bezier_jet_of<Dim, 0>(points, degree, s);
 }
 
 /// The Bernstein coefficients (degree 2p - 1, without a positive factor) of the derivative of |C(s)|^2, the curve
@@ -40,13 +46,14 @@ CurveJet<Dim> bezier_jet(const double* points, int degree, double s) {
 template <int Dim>
 std::array<double, 2 * capacity> distance_derivative(const StackNet<Dim>& net) {
   const int p = static_cast<int>(net.cols()) - 1;
-  std::array<double, 2 * capacity> sums{};
-  std::array<double, capacity> binomial{};
-  std::array<double, capacity> lower{};
+  std::array<double, 2 * capacity> sums;
+  std::fill_n(sums.begin(), 2 * p, 0.0);
+  std::array<double, capacity> binomial;
+  std::array<double, capacity> lower;
   const auto fill = [](std::array<double, capacity>& row, int n) {
     row[0] = 1.0;
-    for (std::size_t k = 1; k <= static_cast<std::size_t>(n); ++k)
-      row[k] = row[k - 1] * static_cast<double>(static_cast<std::size_t>(n) - k + 1) / static_cast<double>(k);
+    for (int k = 1; k <= n; ++k)
+      row[static_cast<std::size_t>(k)] = row[static_cast<std::size_t>(k - 1)] * (n - k + 1) / k;
   };
   fill(binomial, p);
   fill(lower, p - 1);
@@ -96,6 +103,8 @@ double box_distance_squared(const StackNet<Dim>& net) {
 template <int Dim>
 struct SegmentedCurve<Dim>::Search {
   Point<Dim> target;
+  /// The segment inside which a minimum is known already; -1: none.
+  int settled = -1;
   double u = 0.0;
   double squared = std::numeric_limits<double>::infinity();
 
@@ -162,7 +171,8 @@ CurveJet<Dim> SegmentedCurve<Dim>::jet_on(int segment, double u) const {
 }
 
 template <int Dim>
-double SegmentedCurve<Dim>::follow(const Point<Dim>& target, double u, int steps) const {
+FootPoint SegmentedCurve<Dim>::follow(const Point<Dim>& target, double u, int steps) const {
+  constexpr double rounding = 1e-15;
   const Interval whole = domain();
   const auto into_domain = [&](double v) {
     if (!is_closed_) return std::clamp(v, whole.first, whole.last);
@@ -170,7 +180,8 @@ double SegmentedCurve<Dim>::follow(const Point<Dim>& target, double u, int steps
     if (v >= whole.last) v -= whole.length();
     return std::clamp(v, whole.first, whole.last);
   };
-  CurveJet<Dim> jet = this->jet(u);
+  int segment = find_segment(u);
+  CurveJet<Dim> jet = jet_on(segment, u);
   double squared = (jet.point - target).squaredNorm();
   for (int i = 0; i < steps; ++i) {
     const Vector<Dim> offset = jet.point - target;
@@ -179,30 +190,46 @@ double SegmentedCurve<Dim>::follow(const Point<Dim>& target, double u, int steps
     const double hessian = metric + offset.dot(jet.duu);
     if (!(metric > 0.0) || slope == 0.0) break;
     // Newton's step where the distance is safely convex, else Gauss and Newton's; never more than half a segment.
-    const double longest = 0.5 * segment_domain(find_segment(u)).length();
+    const double longest = 0.5 * segment_domain(segment).length();
     double step = std::clamp(-slope / (hessian > 0.1 * metric ? hessian : metric), -longest, longest);
+    // What is to be gained is less than can be told.
+    if (-slope * step <= rounding * squared || std::abs(step) <= rounding * whole.length()) break;
     bool accepted = false;
     for (int halving = 0; halving < 8 && !accepted; ++halving, step *= 0.5) {
       const double next = into_domain(u + step);
-      const CurveJet<Dim> at_next = this->jet(next);
+      const int next_segment = find_segment(next);
+      const CurveJet<Dim> at_next = jet_on(next_segment, next);
       const double distance = (at_next.point - target).squaredNorm();
       accepted = distance < squared;
       if (!accepted) continue;
       u = next;
+      segment = next_segment;
       jet = at_next;
       squared = distance;
     }
     if (!accepted) break;
   }
-  return u;
+  return {u, squared};
+}
+
+/// Whether u is a minimum of the distance to so many digits that the distance is met to rounding.
+template <int Dim>
+bool SegmentedCurve<Dim>::is_stationary(const Point<Dim>& target, double u) const {
+  constexpr double precision = 1e-9;
+  const int segment = find_segment(u);
+  const CurveJet<Dim> at = jet_on(segment, u);
+  const Vector<Dim> offset = at.point - target;
+  const double hessian = at.du.squaredNorm() + offset.dot(at.duu);
+  return hessian > 0.0 && std::abs(offset.dot(at.du)) <= precision * hessian * segment_domain(segment).length();
 }
 
 template <int Dim>
 ClosestCurvePoint<Dim> SegmentedCurve<Dim>::nearest(const Point<Dim>& target, double guess) const {
   constexpr int steps = 12;
   Search state{target};
-  const double near = follow(target, guess, steps);
+  const double near = follow(target, guess, steps).u;
   state.offer(near, jet(near).point);
+  if (is_stationary(target, near)) state.settled = find_segment(near);
   search(state, 1);
   const Point<Dim> point = jet(state.u).point;
   return {state.u, point, (point - target).norm()};
@@ -243,8 +270,9 @@ void SegmentedCurve<Dim>::search_segment(Search& state, int segment) const {
   const auto offer = [&](double s) {
     state.offer(domain.first + s * domain.length(), state.target + bezier_jet<Dim>(net.data(), p, s).point);
   };
-  offer(0.0);
-  offer(1.0);
+  state.offer(domain.first, segment_points(segment).col(0));
+  state.offer(domain.last, segment_points(segment).col(p));
+  if (segment == state.settled && sign_variations(distance_derivative<Dim>(net), 2 * p) == 1) return;
   std::vector<Part> parts{{net, 0.0, 1.0}};
   while (!parts.empty()) {
     const Part part = parts.back();
@@ -253,7 +281,8 @@ void SegmentedCurve<Dim>::search_segment(Search& state, int segment) const {
     const auto derivative = distance_derivative<Dim>(part.net);
     const int variations = sign_variations(derivative, 2 * p);
     // Without a minimum inside, the ends are nearest; they have been offered.
-    const double leading = *std::find_if(derivative.begin(), derivative.end() - 1, [](double d) { return d != 0.0; });
+    const double leading =
+        *std::find_if(derivative.begin(), derivative.begin() + 2 * p - 1, [](double d) { return d != 0.0; });
     if (variations == 0 || (variations == 1 && leading > 0.0)) continue;
     const double middle = 0.5 * (part.first + part.last);
     if (variations == 1 || part.last - part.first < narrowest) {

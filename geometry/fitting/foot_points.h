@@ -10,6 +10,12 @@
 
 namespace isorim::geometry {
 
+/// A point of a curve near another point.
+struct FootPoint {
+  double u = 0.0;
+  double squared_distance = 0.0;
+};
+
 /// A polynomial B-spline curve cut into its Bézier segments once, for many points: values, derivatives and nearest
 /// points (foot points) at a cost that grows with the logarithm of the number of segments.
 template <int Dim>
@@ -30,10 +36,12 @@ class SegmentedCurve {
   int find_segment(double u) const;
   /// Derivatives are with respect to u.
   CurveJet<Dim> jet(double u) const { return jet_on(find_segment(u), u); }
+  /// The same of a segment, continued beyond it.
+  CurveJet<Dim> jet_on(int segment, double u) const;
 
-  /// The parameter after `steps` damped Newton steps for the distance from the target, starting at u: the nearest
-  /// point in the neighbourhood, on a closed curve across the ends if need be.
-  double follow(const Point<Dim>& target, double u, int steps) const;
+  /// The point after `steps` damped Newton steps for the distance from the target, starting at u: the nearest point in
+  /// the neighbourhood, on a closed curve across the ends if need be.
+  FootPoint follow(const Point<Dim>& target, double u, int steps) const;
 
   /// The globally nearest point; `guess` is any parameter in the domain, the better the faster. Segments whose box of
   /// control points lies farther away than the best point so far are left out; on the others the zeros of the
@@ -44,7 +52,7 @@ class SegmentedCurve {
  private:
   struct Search;
 
-  CurveJet<Dim> jet_on(int segment, double u) const;
+  bool is_stationary(const Point<Dim>& target, double u) const;
   void build_boxes();
   void search(Search& search, int node) const;
   void search_segment(Search& search, int segment) const;

@@ -76,10 +76,10 @@ template <int Dim>
       fmt::format("curve fit: the points do not determine all {} control points; give fewer", control_points));
 }
 
-/// Knots where the errors are: starting from uniform ones for seven tenths of the control points.
+/// Knots where the errors are: uniform ones for four fifths of the control points, the rest added.
 template <int Dim>
 FitState<Dim> grow_knots(const FitFrame<Dim>& frame, int control_points) {
-  const int first = std::max(frame.fewest_control_points(), 7 * control_points / 10);
+  const int first = std::max(frame.fewest_control_points(), 4 * control_points / 5);
   FitState<Dim> state = frame.start(FitKnots::uniform, first);
   if (!frame.solve(state, {})) {
     state = frame.start(FitKnots::piegl_tiller, first);
@@ -87,7 +87,6 @@ FitState<Dim> grow_knots(const FitFrame<Dim>& frame, int control_points) {
   }
   while (true) {
     frame.correct_parameters(state, 1);
-    if (!frame.solve(state, {})) refuse<Dim>(control_points);
     const int have = frame.control_points(state.breakpoints);
     if (have == control_points) return state;
     if (!add_knots(frame, std::min(control_points - have, std::max(1, have / 4)), state)) refuse<Dim>(control_points);
@@ -95,7 +94,8 @@ FitState<Dim> grow_knots(const FitFrame<Dim>& frame, int control_points) {
   }
 }
 
-/// The fairness term that the options ask for at the present distances.
+/// The fairness term that the options ask for at the present distances; it then stays, so that what is improved is one
+/// and the same sum.
 template <int Dim>
 Fairness choose_fairness(const FitFrame<Dim>& frame, const FitState<Dim>& state) {
   const CurveFitOptions<Dim>& options = frame.options();
@@ -110,69 +110,97 @@ Fairness choose_fairness(const FitFrame<Dim>& frame, const FitState<Dim>& state)
 }
 
 /// Lobes of curvature that are lower than half the distances of the data are no shape but noise: the fairness term is
-/// made stronger around them, the lowest first, until they are gone; what costs too much distance is undone.
-void smooth_low_lobes(const FitFrame<2>& frame, Fairness fairness, FitState<2>& state) {
-  constexpr double stronger = 8.0;
-  constexpr double strongest = 1e6;
-  constexpr double low = 0.5;
-  constexpr double rms_growth = 1.2;
-  constexpr double max_growth = 1.05;
-  if (!(fairness.mu > 0.0) || fairness.derivative > frame.degree()) return;
-  const double level = std::sqrt(state.mean_squared);
-  const double most = max_growth * state.max_distance;
-  const std::size_t spans = state.breakpoints.size() - 1;
-  fairness.factors.assign(spans, 1.0);
-  const auto span_of = [&](double u) {
-    if (u >= 1.0) u -= 1.0;
-    const auto next = std::upper_bound(state.breakpoints.begin() + 1, state.breakpoints.end() - 1, u);
-    return static_cast<std::size_t>(next - state.breakpoints.begin()) - 1;
-  };
-  std::vector<char> is_kept(spans, 0);
-  for (std::size_t round = 0; round < 2 * spans; ++round) {
-    const CurvatureLobe* lowest = nullptr;
-    const std::vector<CurvatureLobe> lobes = curvature_lobes(frame.curve(state), frame.options().closed);
-    for (const CurvatureLobe& lobe : lobes)
-      if (lobe.height < low * level && (lowest == nullptr || lobe.height < lowest->height) &&
-          is_kept[span_of(0.5 * (lobe.first + lobe.last))] == 0)
-        lowest = &lobe;
-    if (lowest == nullptr) return;
-    const std::size_t first = span_of(lowest->first);
-    const std::size_t count = (span_of(lowest->last) + spans - first) % spans + 3;
-    FitState<2> next = state;
-    Fairness next_fairness = fairness;
-    for (std::size_t i = 0; i < std::min(count, spans); ++i) {
-      double& factor = next_fairness.factors[(first + spans - 1 + i) % spans];
-      factor = std::min(strongest, stronger * factor);
-    }
-    bool is_good = frame.solve(next, next_fairness);
-    if (is_good) frame.correct_parameters(next, 1);
-    is_good = is_good && std::sqrt(next.mean_squared) <= rms_growth * level && next.max_distance <= most;
-    if (is_good) {
-      state = std::move(next);
-      fairness = std::move(next_fairness);
-    } else {
-      state.iterations = next.iterations;
-      is_kept[span_of(0.5 * (lowest->first + lowest->last))] = 1;
+/// made stronger around them until they are gone. Where that costs too much distance, the higher half of them is kept
+/// and the lower half tried again.
+class LobeSmoother {
+ public:
+  LobeSmoother(const FitFrame<2>& frame, FitState<2>& state)
+      : frame_(frame),
+        state_(state),
+        spans_(state.breakpoints.size() - 1),
+        level_(std::sqrt(state.mean_squared)),
+        most_(max_growth * state.max_distance),
+        is_kept_(spans_, 0) {
+    if (state_.fairness.factors.empty()) state_.fairness.factors.assign(spans_, 1.0);
+  }
+
+  void run() {
+    std::vector<CurvatureLobe> lobes = low_lobes();
+    for (std::size_t round = 0; round < 2 * spans_ && !lobes.empty(); ++round) {
+      if (smooth(lobes)) {
+        lobes = low_lobes();
+        continue;
+      }
+      const std::size_t lower = lobes.size() / 2;
+      for (std::size_t i = lower; i < lobes.size(); ++i) keep(lobes[i]);
+      lobes.resize(lower);
+      if (lobes.empty()) lobes = low_lobes();
     }
   }
-}
 
-/// Knots and parameters improved by turns.
+ private:
+  static constexpr double stronger = 32.0;
+  static constexpr double strongest = 1e6;
+  static constexpr double low = 0.5;
+  static constexpr double rms_growth = 1.2;
+  static constexpr double max_growth = 1.05;
+
+  std::size_t span_of(double u) const {
+    if (u >= 1.0) u -= 1.0;
+    const auto next = std::upper_bound(state_.breakpoints.begin() + 1, state_.breakpoints.end() - 1, u);
+    return static_cast<std::size_t>(next - state_.breakpoints.begin()) - 1;
+  }
+
+  bool is_kept(const CurvatureLobe& lobe) const { return is_kept_[span_of(0.5 * (lobe.first + lobe.last))] != 0; }
+  void keep(const CurvatureLobe& lobe) { is_kept_[span_of(0.5 * (lobe.first + lobe.last))] = 1; }
+
+  /// The lowest first.
+  std::vector<CurvatureLobe> low_lobes() const {
+    std::vector<CurvatureLobe> lobes = curvature_lobes(frame_.curve(state_), frame_.options().closed);
+    std::erase_if(lobes, [&](const CurvatureLobe& lobe) { return lobe.height >= low * level_ || is_kept(lobe); });
+    std::sort(lobes.begin(), lobes.end(),
+              [](const CurvatureLobe& a, const CurvatureLobe& b) { return a.height < b.height; });
+    return lobes;
+  }
+
+  /// False, and nothing is changed, if it costs too much.
+  bool smooth(const std::vector<CurvatureLobe>& lobes) {
+    FitState<2> next = state_;
+    std::vector<double>& factors = next.fairness.factors;
+    std::vector<char> is_near(spans_, 0);
+    for (const CurvatureLobe& lobe : lobes) {
+      const std::size_t first = span_of(lobe.first);
+      const std::size_t count = (span_of(lobe.last) + spans_ - first) % spans_ + 3;
+      for (std::size_t i = 0; i < std::min(count, spans_); ++i) is_near[(first + spans_ - 1 + i) % spans_] = 1;
+    }
+    for (std::size_t i = 0; i < spans_; ++i)
+      if (is_near[i] != 0) factors[i] = std::min(strongest, stronger * factors[i]);
+    const bool is_solved = frame_.solve(next, next.fairness);
+    state_.iterations = next.iterations;
+    if (!is_solved) return false;
+    frame_.correct_parameters(next, 1);
+    if (std::sqrt(next.mean_squared) > rms_growth * level_ || next.max_distance > most_) return false;
+    state_ = std::move(next);
+    return true;
+  }
+
+  const FitFrame<2>& frame_;
+  FitState<2>& state_;
+  std::size_t spans_;
+  double level_;
+  double most_;
+  std::vector<char> is_kept_;
+};
+
+/// Knots, parameters and control points improved together.
 template <int Dim>
 FitState<Dim> find_knots(const FitFrame<Dim>& frame, int control_points) {
-  constexpr int corrections = 4;
-  FitState<Dim> state = grow_knots(frame, control_points);
-  double damping = 1e-4;
-  for (int i = 0; i < frame.options().knot_steps; ++i) {
-    frame.correct_parameters(state, 1);
-    const Fairness fairness = choose_fairness(frame, state);
-    if (!frame.solve(state, fairness)) refuse<Dim>(control_points);
-    if (!move_knots(frame, fairness, state, damping)) break;
-  }
-  for (int i = 0; i < corrections; ++i) {
-    frame.correct_parameters(state, 1);
-    if (!frame.solve(state, choose_fairness(frame, state))) refuse<Dim>(control_points);
-  }
+  FitState<Dim> state = frame.moves_knots() ? grow_knots(frame, control_points) : frame.first_fit(control_points, {});
+  if (!frame.moves_knots()) frame.correct_parameters(state, 1);
+  state.fairness = choose_fairness(frame, state);
+  double damping = 1e-3;
+  for (int i = 0; i < frame.options().knot_steps; ++i)
+    if (!move_knots(frame, state, damping)) break;
   return state;
 }
 
@@ -210,14 +238,14 @@ FitState<Dim> free_fit(const FitFrame<Dim>& frame, int control_points) {
     const FitFrame<Dim> few = frame.thinned(stride);
     state = find_knots(few, control_points);
     spread_parameters(frame, few, state);
+    frame.correct_parameters(state, 2);
+    if (!frame.solve(state, state.fairness)) refuse<Dim>(control_points);
   } else {
     state = find_knots(frame, control_points);
   }
-  frame.correct_parameters(state, 2);
-  const Fairness fairness = choose_fairness(frame, state);
-  if (!frame.solve(state, fairness)) refuse<Dim>(control_points);
   frame.correct_parameters(state, 1);
-  if constexpr (Dim == 2) smooth_low_lobes(frame, fairness, state);
+  if constexpr (Dim == 2)
+    if (state.fairness.mu > 0.0 && state.fairness.derivative <= frame.degree()) LobeSmoother(frame, state).run();
   return state;
 }
 

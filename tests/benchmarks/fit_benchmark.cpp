@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "geometry/fitting/curve_fit.h"
+#include "tests/geometry/fitting/held_out_sections.h"
 #include "tests/geometry/fitting/measured_sections.h"
 #include "tests/geometry/random_splines.h"
 
@@ -34,12 +35,12 @@ void free_fit(benchmark::State& state) {
 }
 BENCHMARK(free_fit)->DenseRange(1, 4)->Unit(benchmark::kMillisecond);
 
-void free_fit_two_steps(benchmark::State& state) {
+void free_fit_four_steps(benchmark::State& state) {
   CurveFitOptions<2> options;
-  options.knot_steps = 2;
+  options.knot_steps = 4;
   fit_section(state, options);
 }
-BENCHMARK(free_fit_two_steps)->DenseRange(1, 4)->Unit(benchmark::kMillisecond);
+BENCHMARK(free_fit_four_steps)->DenseRange(1, 4)->Unit(benchmark::kMillisecond);
 
 void fixed_knots(benchmark::State& state) {
   CurveFitOptions<2> options;
@@ -55,6 +56,19 @@ void corrected_fixed_knots(benchmark::State& state) {
   fit_section(state, options);
 }
 BENCHMARK(corrected_fixed_knots)->DenseRange(1, 4)->Unit(benchmark::kMillisecond);
+
+/// The held-out sections, 100 points with noise of 1e-4, at 28 control points; fit_against_scipy.py does the same.
+void fit_held_out(benchmark::State& state) {
+  namespace sections = isorim::geometry::testing;
+  const std::size_t shape = static_cast<std::size_t>(state.range(0) - 1);
+  const Points<2> points = sections::held_out_scan(shape, 100, 1e-4);
+  CurveFitOptions<2> options;
+  options.control_points = 28;
+  for (auto _ : state) benchmark::DoNotOptimize(fit_points(points, options).control_points);
+  const double error = sections::distance_from_truth(shape, fit_points(points, options).curve);
+  state.SetLabel(fmt::format("{} off the truth by {:.2e}", sections::held_out_names[shape], error));
+}
+BENCHMARK(fit_held_out)->DenseRange(1, 4)->Unit(benchmark::kMillisecond);
 
 /// A wavy circle with noise of a thousandth of its radius.
 void million_points(benchmark::State& state) {
