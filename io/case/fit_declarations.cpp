@@ -135,18 +135,21 @@ const Schema<FitKeys>& schema<FitKeys>() {
           .choice("method", &FitKeys::method,
                   {{"free", FitMethod::free}, {"fixed_knots", FitMethod::fixed_knots}, {"pereira", FitMethod::pereira}},
                   {.text = "free: parameters and knots are improved. fixed_knots: linear least squares. pereira: as in "
-                           "the dissertation of L. R. Pereira (2014). If absent, free for a region and fixed_knots "
-                           "for a body, whose sections then share their knots."})
+                           "the dissertation of L. R. Pereira (2014). Sections of a body, of one contour each, share "
+                           "their knots. Default: free."})
           .choice("parameters", &FitKeys::parameters,
                   {{"chord_length", FitParameters::chord_length},
                    {"centripetal", FitParameters::centripetal},
                    {"uniform", FitParameters::uniform}},
                   {.text = "Of the points, at first."})
-          .choice("knots", &FitKeys::knots,
-                  {{"uniform", FitKnots::uniform},
-                   {"averaging", FitKnots::averaging},
-                   {"piegl_tiller", FitKnots::piegl_tiller}},
-                  {.text = "Of the curves, at first."})
+          .choice(
+              "knots", &FitKeys::knots,
+              {{"uniform", FitKnots::uniform},
+               {"averaging", FitKnots::averaging},
+               {"piegl_tiller", FitKnots::piegl_tiller}},
+              {.text =
+                   "Of the curves. uniform: the knots that method = \"free\" starts from, and moves. On the others it "
+                   "improves the parameters alone."})
           .key("corrections", &FitKeys::corrections,
                {.text = "method = \"fixed_knots\": how often parameters move to the nearest points of the curve.",
                 .range = Range::between(0, 1000)})

@@ -14,6 +14,7 @@
 #include "geometry/fitting/contour_ordering.h"
 #include "geometry/fitting/point_reduction.h"
 #include "geometry/fitting/section_alignment.h"
+#include "geometry/fitting/section_fit.h"
 #include "geometry/fitting/section_solid.h"
 #include "io/case/curve_builder.h"
 #include "io/case/face_builder.h"
@@ -266,14 +267,14 @@ class FitBuilder {
 
   geometry::CurveFitOptions<2> options_for(const ContourPoints& contour) const {
     geometry::CurveFitOptions<2> options;
-    options.method =
-        keys_.method.value_or(keys_.is_body() ? geometry::FitMethod::fixed_knots : geometry::FitMethod::free);
+    options.method = keys_.method.value_or(geometry::FitMethod::free);
     options.closed = contour.closed;
     options.degree = keys_.degree;
     options.control_points = keys_.control_points.value_or(0);
     options.tolerance = keys_.tolerance.value_or(0.0);
     options.parameters = keys_.parameters;
-    options.knots = keys_.knots;
+    // Uniform ones are where the methods start by themselves.
+    if (keys_.knots != geometry::FitKnots::uniform) options.knots = keys_.knots;
     if (keys_.weights == "curvature") {
       options.weights = geometry::FitWeights::curvature_radius;
     } else if (!contour.weights.empty() && keys_.weights != "uniform") {
@@ -287,28 +288,16 @@ class FitBuilder {
     return options;
   }
 
-  FittedCurve fitted(const std::string& name, const SectionPlane& plane, const ContourPoints& contour,
-                     int control_points) const {
-    geometry::CurveFitOptions<2> options = options_for(contour);
-    if (control_points > 0) options.control_points = control_points;
-    geometry::CurveFit<2> fit = named(name, [&] { return geometry::fit_points<2>(contour.points, options); });
-    if (keys_.tolerance) fit.tolerance_met = fit.quality.max_distance <= *keys_.tolerance;
-    return {name, plane, contour.closed, contour.points, std::move(fit)};
-  }
-
   void fit_all() {
     const Clock::time_point start = Clock::now();
-    std::size_t most_contours = 0;
-    for (const MeasuredSection& section : sections_) {
-      most_contours = std::max(most_contours, section.contours.size());
-      for (std::size_t i = 0; i < section.contours.size(); ++i) {
-        const std::string name =
-            section.contours.size() == 1 ? section.name : fmt::format("{}_{}", section.name, i + 1);
-        facts_.curves.push_back(fitted(name, section.plane, section.contours[i], 0));
-      }
+    if (aligned_) {
+      fit_together();
+    } else {
+      for (const MeasuredSection& section : sections_) fit_contours(section);
     }
-    // Sections with the same number of control points can share their knots.
-    if (keys_.is_body() && !keys_.control_points && most_contours == 1) equalise();
+    if (keys_.tolerance)
+      for (FittedCurve& curve : facts_.curves)
+        curve.fit.tolerance_met = curve.fit.quality.max_distance <= *keys_.tolerance;
     facts_.seconds = seconds_since(start);
     const FitSummary all = summarise(facts_);
     if (!all.tolerance_met) {
@@ -317,12 +306,28 @@ class FitBuilder {
     }
   }
 
-  void equalise() {
-    int most = 0;
-    for (const FittedCurve& curve : facts_.curves) most = std::max(most, curve.fit.control_points);
+  void fit_contours(const MeasuredSection& section) {
+    for (std::size_t i = 0; i < section.contours.size(); ++i) {
+      const ContourPoints& contour = section.contours[i];
+      const std::string name = section.contours.size() == 1 ? section.name : fmt::format("{}_{}", section.name, i + 1);
+      geometry::CurveFit<2> fit =
+          named(name, [&] { return geometry::fit_points<2>(contour.points, options_for(contour)); });
+      facts_.curves.push_back({name, section.plane, contour.closed, contour.points, std::move(fit)});
+    }
+  }
+
+  /// Sections of one contour each get the same knots.
+  void fit_together() {
+    std::vector<geometry::SectionPoints> points;
+    for (const MeasuredSection& section : sections_) {
+      const ContourPoints& contour = section.contours.front();
+      points.push_back({section.name, contour.points, options_for(contour)});
+    }
+    std::vector<geometry::CurveFit<2>> fits = geometry::fit_sections(points);
     for (std::size_t k = 0; k < sections_.size(); ++k) {
-      if (facts_.curves[k].fit.control_points == most) continue;
-      facts_.curves[k] = fitted(sections_[k].name, sections_[k].plane, sections_[k].contours.front(), most);
+      const MeasuredSection& section = sections_[k];
+      facts_.curves.push_back({section.name, section.plane, section.contours.front().closed,
+                               section.contours.front().points, std::move(fits[k])});
     }
   }
 
