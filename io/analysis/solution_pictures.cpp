@@ -38,6 +38,14 @@ bool is_elastic(const AnalysisReport& report) {
   return report.equation == "elasticity";
 }
 
+/// What ParaView calls the entries.
+std::vector<std::string> stress_components() {
+  return {"xx", "yy", "zz", "xy", "yz", "xz"};
+}
+std::vector<std::string> principal_components() {
+  return {"first", "second", "third"};
+}
+
 /// Vectors of the plane get a third component, 0.
 Eigen::MatrixXd padded(const Eigen::MatrixXd& vectors) {
   if (vectors.rows() != 2) return vectors;
@@ -76,9 +84,9 @@ std::vector<PointArray> point_arrays(const FieldSamples& samples) {
                                  {"gradient", padded_gradients(samples.gradient, samples.points.rows())},
                                  {"location", location}};
   if (!samples.is_elastic()) return arrays;
-  arrays.push_back({"stress", tensor_rows(samples.stress)});
+  arrays.push_back({"stress", tensor_rows(samples.stress), stress_components()});
   arrays.push_back({"von_mises", samples.von_mises.transpose()});
-  arrays.push_back({"principal", samples.principal});
+  arrays.push_back({"principal", samples.principal, principal_components()});
   return arrays;
 }
 
@@ -244,9 +252,11 @@ FacetMesh facet_mesh(const Analysis<Dim>& analysis, int threads) {
                        {names.flux, padded(gather([](const Values& v) { return v.flux; }))},
                        {"gradient", padded_gradients(gather([](const Values& v) { return v.fields.gradient; }), Dim)}};
   if (elastic) {
-    mesh.point_arrays.push_back({"stress", gather([](const Values& v) { return v.fields.stress; })});
+    mesh.point_arrays.push_back(
+        {"stress", gather([](const Values& v) { return v.fields.stress; }), stress_components()});
     mesh.point_arrays.push_back({"von_mises", gather([](const Values& v) { return v.fields.von_mises.transpose(); })});
-    mesh.point_arrays.push_back({"principal", gather([](const Values& v) { return v.fields.principal; })});
+    mesh.point_arrays.push_back(
+        {"principal", gather([](const Values& v) { return v.fields.principal; }), principal_components()});
   }
   std::vector<double> patch;
   std::vector<double> element;

@@ -73,6 +73,31 @@ struct ConvertArguments {
 /// a drawing of a region of the plane (.svg).
 int convert(const ConvertArguments& arguments, std::ostream& out, std::ostream& err);
 
+struct PictureArguments {
+  /// Cases, CAD files, and .vtu, .vtp and .vti files, drawn together.
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path output;
+  /// Of the cases.
+  std::vector<std::string> overrides;
+  std::vector<std::string> views;
+  /// Pixels, "WIDTHxHEIGHT".
+  std::string size = "1200x900";
+  std::optional<std::string> field;
+  std::string component;
+  /// Two ends, or none.
+  std::vector<double> range;
+  std::string map = "viridis";
+  std::string colours = "automatic";
+  std::string lines = "elements";
+  /// A colour, or transparent.
+  std::string background = "white";
+  /// 0: all.
+  int threads = 0;
+};
+/// Draws a PNG without a display. A case is drawn as `run` writes it; an analysis is solved if the field that is shown
+/// is one of its solution.
+int draw_picture(const PictureArguments& arguments, std::ostream& out, std::ostream& err);
+
 /// Makes a folder for results. Throws InputError with its path if it cannot.
 void make_folder(const std::filesystem::path& folder);
 

@@ -36,6 +36,7 @@ struct Arguments {
   bool json = false;
   ConvertArguments convert;
   bool loose_faces = false;
+  PictureArguments picture;
   HelpArguments help;
 };
 
@@ -54,6 +55,33 @@ void add_threads(CLI::App& command, int& threads) {
   command.add_option("-j,--threads", threads, "Number of threads; all if absent")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
+}
+
+void declare_picture(CLI::App& app, PictureArguments& arguments) {
+  CLI::App& picture =
+      *app.add_subcommand("picture", "Draws cases, CAD files and VTK files as a PNG, without a display");
+  picture.add_option("IN", arguments.inputs, "Case files (.toml), CAD files, .vtu, .vtp, .vti; drawn together")
+      ->required();
+  picture.add_option("-o,--output", arguments.output, "The picture (.png)")->required()->type_name("FILE");
+  add_overrides(picture, arguments.overrides);
+  picture
+      .add_option("--view", arguments.views,
+                  "iso, iso_back, front, back, left, right, top, bottom, all, or \"azimuth,elevation\" in degrees; "
+                  "several make a sheet")
+      ->type_name("VIEW");
+  picture.add_option("--size", arguments.size, "Pixels; 1200x900 if absent")->type_name("WxH");
+  picture.add_option("--field", arguments.field, "Field that colours show; an analysis is solved for its own")
+      ->type_name("NAME");
+  picture.add_option("--component", arguments.component, "x, xx, ..., magnitude, or a number from 0")->type_name("C");
+  picture.add_option("--range", arguments.range, "Ends of the colours; those of the values if absent")
+      ->expected(2)
+      ->type_name("LOW HIGH");
+  picture.add_option("--map", arguments.map, "Colours: viridis, coolwarm or grey")->type_name("MAP");
+  picture.add_option("--colours", arguments.colours, "Without a field: automatic, patch or plain")->type_name("BY");
+  picture.add_option("--lines", arguments.lines, "Borders of elements: elements or none")->type_name("LINES");
+  picture.add_option("--background", arguments.background, "white, grey, black, #rrggbb or transparent")
+      ->type_name("COLOUR");
+  add_threads(picture, arguments.threads);
 }
 
 void declare(CLI::App& app, Arguments& arguments) {
@@ -93,6 +121,8 @@ void declare(CLI::App& app, Arguments& arguments) {
                   "IGES: unit of the case's lengths, mm if absent; a CAD file's are converted")
       ->type_name("UNIT");
 
+  declare_picture(app, arguments.picture);
+
   CLI::App& help = *app.add_subcommand("help", "Explains a command (help run) or case files (help case [SECTION])");
   help.add_option("TOPIC", arguments.help.topic, "A command; or case, with a section or type")->expected(0, 2);
   help.add_flag("--markdown", arguments.help.markdown, "Prints the reference of case files as Markdown");
@@ -111,7 +141,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
 
 /// Commands of the design that come later.
 bool is_later(const std::string& command) {
-  const std::vector<std::string> later{"sweep", "picture"};
+  const std::vector<std::string> later{"sweep"};
   return std::find(later.begin(), later.end(), command) != later.end();
 }
 
@@ -159,6 +189,7 @@ int dispatch(CLI::App& app, Arguments& arguments, std::ostream& out, std::ostrea
     arguments.convert.faces = arguments.loose_faces ? FaceForm::loose : FaceForm::solids;
     return convert(arguments.convert, out, err);
   }
+  if (app.got_subcommand("picture")) return draw_picture(arguments.picture, out, err);
   if (app.got_subcommand("help")) return print_help(arguments.help, out);
   err << app.help();
   return 2;

@@ -1,6 +1,7 @@
 #include "io/vtk/field_writer.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include <fmt/format.h>
 #include <vtkCellArray.h>
@@ -35,6 +36,9 @@ void add_arrays(vtkDataSetAttributes* data, const std::vector<PointArray>& array
     vtkNew<vtkDoubleArray> array;
     array->SetName(source.name.c_str());
     array->SetNumberOfComponents(static_cast<int>(source.values.rows()));
+    for (std::size_t c = 0; c < source.components.size(); ++c) {
+      array->SetComponentName(static_cast<vtkIdType>(c), source.components[c].c_str());
+    }
     array->SetNumberOfTuples(count);
     std::copy(source.values.data(), source.values.data() + source.values.size(), array->GetPointer(0));
     data->AddArray(array);

@@ -18,6 +18,8 @@ namespace isorim::io {
 struct PointArray {
   std::string name;
   Eigen::MatrixXd values;
+  /// One a component, or none.
+  std::vector<std::string> components = {};
 };
 
 /// Flat facets, or pieces of lines in the plane. Facets of different elements share no point, since fields may jump
