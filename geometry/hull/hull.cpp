@@ -106,4 +106,27 @@ NurbsSurface<3> wigley_surface(double length, double beam, double draught) {
   return NurbsSurface<3>::from_points(KnotVector::bezier(2), KnotVector::bezier(2), net);
 }
 
+OffsetTable wigley_offsets(double length, double beam, double draught, int stations, int waterlines) {
+  OffsetTable table;
+  table.name = "Wigley";
+  table.source = "y = (B/2) (1 - (2x/L)^2) (1 - ((z - T)/T)^2)";
+  table.length = length;
+  table.beam = beam;
+  table.draught = draught;
+  table.after_perpendicular = -0.5 * length;
+  table.half_breadths.resize(waterlines, stations);
+  for (int j = 0; j < waterlines; ++j) table.waterlines.push_back(draught * j / (waterlines - 1));
+  for (int i = 0; i < stations; ++i) {
+    const double x = (2.0 * i - (stations - 1)) / (stations - 1);
+    table.stations.push_back(0.5 * length * x);
+    table.station_names.push_back(fmt::format("{}", i));
+    for (int j = 0; j < waterlines; ++j) {
+      const double below = 1.0 - 1.0 * j / (waterlines - 1);
+      table.half_breadths(j, i) = 0.5 * beam * ((1.0 - x) * (1.0 + x)) * ((1.0 - below) * (1.0 + below));
+    }
+  }
+  check(table);
+  return table;
+}
+
 }  // namespace isorim::geometry

@@ -21,4 +21,7 @@ Boundary<3> hull_solid(const OffsetTable& table, const HullSurfaceOptions& optio
 /// biquadratic, exact. Volume 4/9 L B T. Throws GeometryError for lengths that are not positive.
 NurbsSurface<3> wigley_surface(double length, double beam, double draught);
 
+/// Its offsets at equally spaced stations and waterlines, x = 0 amidships.
+OffsetTable wigley_offsets(double length, double beam, double draught, int stations = 21, int waterlines = 9);
+
 }  // namespace isorim::geometry
