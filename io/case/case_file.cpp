@@ -169,6 +169,11 @@ std::vector<std::string> patch_names(const AnyBoundary& shape) {
   return names;
 }
 
+void check_output(const CaseKeys& keys, int dim, Complaints& complaints) {
+  if (keys.output.stl && dim == 2)
+    complaints.add(keys.output.where, "found stl = true; a mesh (.stl) is that of a solid, and the shape is plane");
+}
+
 void check_poles(const CaseKeys& keys, int dim, Complaints& complaints) {
   const auto check = [&](const std::optional<Coordinates>& pole) {
     if (!pole || pole->values.empty() || static_cast<int>(pole->values.size()) == dim) return;
@@ -263,6 +268,7 @@ CaseFile read_case(const Value& root, const std::filesystem::path& path, const F
       check_expectations(file.keys, *dim, complaints);
       check_convergence(file.keys, *dim, complaints);
       check_poles(file.keys, *dim, complaints);
+      check_output(file.keys, *dim, complaints);
     }
   }
   complaints.throw_if_any();

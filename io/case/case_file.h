@@ -63,6 +63,9 @@ struct OutputKeys {
   bool vtk = true;
   bool hdf5 = true;
   bool svg = true;
+  bool stl = false;
+  /// 0: geometry::TessellationOptions::default_chord of the diagonal.
+  double stl_tolerance = 0.0;
   KeyPlace where;
 };
 

@@ -148,7 +148,12 @@ const Schema<OutputKeys>& schema<OutputKeys>() {
           .key(
               "svg", &OutputKeys::svg,
               {.text = "boundary.svg: a picture of a region of the plane. tmesh_PATCH.svg: the T-mesh of each T-spline "
-                       "that the case gives."});
+                       "that the case gives."})
+          .key("stl", &OutputKeys::stl, {.text = "boundary.stl: a watertight mesh of a solid, for printers and mills."})
+          .key("stl_tolerance", &OutputKeys::stl_tolerance,
+               {.text = "How far the triangles of a mesh may lie from the boundary; 0: 1e-4 of its diagonal.",
+                .unit = "length",
+                .range = Range::at_least(0)});
   return declared;
 }
 

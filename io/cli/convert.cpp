@@ -23,13 +23,14 @@
 namespace isorim::cli {
 namespace {
 
-enum class Format { iges, iga, vtu, svg };
+enum class Format { iges, iga, vtu, svg, stl };
 
-constexpr std::array<std::pair<const char*, Format>, 5> extensions{{{".igs", Format::iges},
+constexpr std::array<std::pair<const char*, Format>, 6> extensions{{{".igs", Format::iges},
                                                                     {".iges", Format::iges},
                                                                     {".iga", Format::iga},
                                                                     {".vtu", Format::vtu},
-                                                                    {".svg", Format::svg}}};
+                                                                    {".svg", Format::svg},
+                                                                    {".stl", Format::stl}}};
 
 Format format_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -39,7 +40,7 @@ Format format_of(const std::filesystem::path& path) {
     if (extension == known) return format;
   }
   throw InputError(
-      fmt::format("cannot write '{}': found the extension \"{}\", expected one of .igs, .iges, .iga, .vtu, .svg",
+      fmt::format("cannot write '{}': found the extension \"{}\", expected one of .igs, .iges, .iga, .vtu, .svg, .stl",
                   path.string(), path.extension().string()));
 }
 
@@ -118,6 +119,10 @@ std::string write_vtu(const ConvertArguments& arguments, const io::AnyModel& mod
   return fmt::format("{} elements", io::summarise(model).elements);
 }
 
+std::string write_stl(const ConvertArguments& arguments, const io::CaseFile& file, const io::AnyModel& model) {
+  return fmt::format("{} triangles", io::write_boundary_stl(arguments.output, file, model));
+}
+
 bool tells_unit(const std::filesystem::path& path) {
   if (!io::has_cad_extension(path)) return false;
   const std::optional<io::CadFormat> format = io::cad_format(path);
@@ -147,6 +152,7 @@ int convert(const ConvertArguments& arguments, std::ostream& out, std::ostream& 
   const std::string content = format == Format::iges  ? write_iges(arguments, file, model)
                               : format == Format::iga ? write_iga(arguments, file, model)
                               : format == Format::svg ? write_svg(arguments, file, model)
+                              : format == Format::stl ? write_stl(arguments, file, model)
                                                       : write_vtu(arguments, model);
   if (file.cad) {
     for (const std::string& warning : file.cad->warnings) {

@@ -110,9 +110,10 @@ void declare(CLI::App& app, Arguments& arguments) {
   CLI::App& convert = *app.add_subcommand("convert", "Writes the boundary of a case or CAD file in another format");
   convert.add_option("IN", arguments.convert.input, "Case file (.toml) or CAD file")->required();
   convert
-      .add_option("OUT", arguments.convert.output,
-                  "IGES (.igs, .iges), T-splines by their extraction (.iga), exact cells for ParaView (.vtu), or a "
-                  "drawing of a region of the plane (.svg)")
+      .add_option(
+          "OUT", arguments.convert.output,
+          "IGES (.igs, .iges), T-splines by their extraction (.iga), exact cells for ParaView (.vtu), a drawing of "
+          "a region of the plane (.svg), or a watertight mesh of a solid (.stl; --set output.stl_tolerance=T)")
       ->required();
   add_overrides(convert, arguments.convert.overrides);
   convert.add_flag("--faces", arguments.loose_faces, "IGES: loose faces even where shells are closed; no solids");

@@ -43,6 +43,7 @@ void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io
   if (output.vtk) io::write_boundary_vtu(folder / "boundary.vtu", model);
   if (output.vtk && io::has_edges(model)) io::write_edges_vtu(folder / "edges.vtu", model);
   if (output.vtk && report.fields) write_fields(model, report, folder);
+  if (output.stl) io::write_boundary_stl(folder / "boundary.stl", file, model);
   if (output.svg) io::write_boundary_svg(folder / "boundary.svg", report.title, model);
   if (output.svg) io::write_tmesh_svgs(folder, file.shape);
   if (report.sections) io::write_sections(folder, *report.sections, output);

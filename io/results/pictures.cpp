@@ -10,8 +10,11 @@
 
 #include <fmt/format.h>
 
+#include "geometry/errors.h"
+#include "geometry/tessellation/tessellation.h"
 #include "geometry/topology/shape_loops.h"
 #include "geometry/trimming/lifted_curve.h"
+#include "io/stl/stl_writer.h"
 #include "io/svg/drawing.h"
 #include "io/svg/tmesh_drawing.h"
 #include "io/vtk/bezier_writer.h"
@@ -178,6 +181,20 @@ void write_free_edges_vtu(const std::filesystem::path& path, const AnyModel& mod
   EdgeCurves edges;
   append_free_edges(std::get<Model<3>>(model), edges);
   edges.write(path);
+}
+
+std::size_t write_boundary_stl(const std::filesystem::path& path, const CaseFile& file, const AnyModel& model) {
+  const auto* solid = std::get_if<Model<3>>(&model);
+  if (!solid)
+    throw InputError(
+        fmt::format("{}: a mesh (.stl) is that of a solid, and this is a shape of the plane", file.path.string()));
+  try {
+    return write_stl(path, file.title(),
+                     geometry::tessellate(solid->oriented, {.chord_tolerance = file.keys.output.stl_tolerance}));
+  } catch (Error& error) {
+    error.add_context(path.string());
+    throw;
+  }
 }
 
 }  // namespace isorim::io

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
@@ -32,5 +33,9 @@ void write_edges_vtu(const std::filesystem::path& path, const AnyModel& model);
 
 /// The free edges alone as rational Bézier curves, exact or within a millionth of the boundary's size; a solid's alone.
 void write_free_edges_vtu(const std::filesystem::path& path, const AnyModel& model);
+
+/// The watertight mesh of a solid to the tolerance of the case's [output]; the number of its triangles. Throws
+/// InputError for a shape of the plane, and as tessellate() and write_stl() do.
+std::size_t write_boundary_stl(const std::filesystem::path& path, const CaseFile& file, const AnyModel& model);
 
 }  // namespace isorim::io

@@ -105,9 +105,9 @@ TEST_F(Convert, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
     EXPECT_EQ(result.out, "");
     return result.err;
   };
-  EXPECT_THAT(
-      refusal({case_file, path("torus.step")}),
-      AllOf(HasSubstr("found the extension \".step\""), HasSubstr("expected one of .igs, .iges, .iga, .vtu, .svg")));
+  EXPECT_THAT(refusal({case_file, path("torus.step")}),
+              AllOf(HasSubstr("found the extension \".step\""),
+                    HasSubstr("expected one of .igs, .iges, .iga, .vtu, .svg, .stl")));
   EXPECT_THAT(refusal({case_file, path("torus")}), HasSubstr("found the extension \"\""));
   EXPECT_THAT(refusal({case_file, path("torus.svg")}), HasSubstr("this is a shape in space"));
   EXPECT_THAT(refusal({case_file, path("torus.igs"), "--unit", "furlong"}),
