@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include <fmt/format.h>
+
 #include "geometry/bezier/element_table.h"
 #include "geometry/errors.h"
 #include "quadrature/parallel.h"
@@ -25,14 +27,25 @@ void measure(MeasuredSection& result, const PlaneSectionOptions& options) {
   result.second_moments = properties.domain->inertia;
 }
 
+/// What cannot be fitted leaves its place empty.
 void fit(MeasuredSection& result, const geometry::SectionSplineOptions& options) {
+  std::vector<std::string>& messages = result.section->messages;
+  const auto fitted = [&](const geometry::SectionCurve& curve) -> std::optional<geometry::SectionSpline> {
+    try {
+      geometry::SectionSpline spline = geometry::fit_section(curve, options);
+      if (!spline.tolerance_met)
+        messages.push_back(fmt::format("a B-spline is {:.3g} off its section curve; its tolerance is {:.3g}",
+                                       spline.error, options.tolerance));
+      return spline;
+    } catch (const Error& error) {
+      messages.push_back(fmt::format("no B-spline of a curve: {}", error.what()));
+      return std::nullopt;
+    }
+  };
   const geometry::PlaneSection& section = *result.section;
-  for (const geometry::SectionLoop& loop : section.loops)
-    result.loops.push_back(geometry::fit_section(loop.curve, options));
-  for (const geometry::SectionCurve& chain : section.chains)
-    result.chains.push_back(geometry::fit_section(chain, options));
-  for (const geometry::SectionCurve& curve : section.touching)
-    result.touching.push_back(geometry::fit_section(curve, options));
+  for (const geometry::SectionLoop& loop : section.loops) result.loops.push_back(fitted(loop.curve));
+  for (const geometry::SectionCurve& chain : section.chains) result.chains.push_back(fitted(chain));
+  for (const geometry::SectionCurve& curve : section.touching) result.touching.push_back(fitted(curve));
 }
 
 MeasuredSection measured(const geometry::PlaneCutter& cutter, const geometry::PlaneFrame& plane,
@@ -41,11 +54,12 @@ MeasuredSection measured(const geometry::PlaneCutter& cutter, const geometry::Pl
   try {
     result.section = cutter.section(plane);
     measure(result, options);
-    if (options.fit_tolerance > 0.0) fit(result, {.tolerance = options.fit_tolerance * cutter.size()});
   } catch (const Error& error) {
     result = {};
     result.failure = error.what();
+    return result;
   }
+  if (options.fit_tolerance > 0.0) fit(result, {.tolerance = options.fit_tolerance * cutter.size()});
   return result;
 }
 

@@ -40,10 +40,11 @@ struct MeasuredSection {
   geometry::Vector2 centroid_error = geometry::Vector2::Zero();
   /// About the centroid, along the axes of the plane's frame: [[int y^2, -int x y], [-int x y, int x^2]].
   Eigen::Matrix2d second_moments = Eigen::Matrix2d::Zero();
-  /// Of every loop, open chain and touching curve, in the order of the section; none if not asked for.
-  std::vector<geometry::SectionSpline> loops;
-  std::vector<geometry::SectionSpline> chains;
-  std::vector<geometry::SectionSpline> touching;
+  /// Of every loop, open chain and touching curve, in the order of the section; none if not asked for. Absent where the
+  /// fit failed: a message of the section says why.
+  std::vector<std::optional<geometry::SectionSpline>> loops;
+  std::vector<std::optional<geometry::SectionSpline>> chains;
+  std::vector<std::optional<geometry::SectionSpline>> touching;
 };
 
 /// Cuts the boundary by every plane and measures the sections: area, perimeter and centroid by the radial integration

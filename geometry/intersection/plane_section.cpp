@@ -345,6 +345,19 @@ class SectionMaker {
   PlaneSection section_;
 };
 
+/// Whether the boundary touches the plane all along a piece of the curve, but for 1e-5 of a radian: an open curve like
+/// that is a part of a loop that is too narrow to be told.
+bool grazes(const SectionCurve& curve, const Vector3& plane_normal) {
+  constexpr double smallest_sine = 1e-5;
+  const auto touches = [&](const SectionPiece& piece, double t) {
+    const SurfaceJet<3> jet = evaluate_jet(*piece.surface, evaluate_jet(piece, t).place.uv);
+    return jet.du.cross(jet.dv).stableNormalized().cross(plane_normal).norm() <= smallest_sine;
+  };
+  return std::ranges::any_of(curve.pieces, [&](const SectionPiece& piece) {
+    return touches(piece, 0.1) && touches(piece, 0.5) && touches(piece, 0.9);
+  });
+}
+
 }  // namespace
 
 PlaneFrame plane_frame(const Point3& point, const Vector3& normal) {
@@ -385,7 +398,9 @@ class PlaneCutter::Faces {
   PlaneSection section(const PlaneFrame& plane) const {
     for (std::size_t k = 0; k + 1 < shifts.size(); ++k) {
       try {
-        return shifted_section(plane, shifts[k]);
+        PlaneSection result = shifted_section(plane, shifts[k]);
+        if (std::ranges::none_of(result.chains, [&](const auto& chain) { return grazes(chain, plane.normal); }))
+          return result;
       } catch (const GeometryError&) {
         // The next plane may miss what is singular here; the last one says what is wrong.
       }

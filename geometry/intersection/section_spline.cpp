@@ -40,29 +40,29 @@ class PlanePath {
   explicit PlanePath(const NurbsCurve<2>& curve) : curve_(&curve) {
     constexpr int parts = 8;
     const std::vector<double> breaks = curve.knots().breakpoints();
-    nodes_.push_back(breaks.front());
-    lengths_.push_back(0.0);
+    add_node(breaks.front(), 0.0);
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
       for (int k = 1; k <= parts; ++k) {
         const double next = k == parts ? breaks[i + 1] : breaks[i] + (breaks[i + 1] - breaks[i]) * k / parts;
-        lengths_.push_back(lengths_.back() + length_between(nodes_.back(), next));
-        nodes_.push_back(next);
+        add_node(next, lengths_.back() + length_between(nodes_.back(), next));
       }
   }
 
   double length() const { return lengths_.back(); }
 
   ArcJet at(double s) const {
+    // Newton's method from the inverse that the table's values and speeds interpolate; the step squares the error.
+    constexpr double last_step = 1e-9;
+    constexpr int most_steps = 12;
     const auto above = std::upper_bound(lengths_.begin() + 1, lengths_.end() - 1, s);
     const auto i = static_cast<std::size_t>(above - lengths_.begin()) - 1;
-    const double span = lengths_[i + 1] - lengths_[i];
-    double t = nodes_[i] + (nodes_[i + 1] - nodes_[i]) * (span > 0.0 ? (s - lengths_[i]) / span : 0.0);
-    for (int iteration = 0; iteration < 8; ++iteration) {
+    double t = guess(i, s);
+    for (int iteration = 0; iteration < most_steps; ++iteration) {
       const double speed = evaluate_jet(*curve_, t).du.norm();
       const double step = (s - lengths_[i] - length_between(nodes_[i], t)) / speed;
       if (!std::isfinite(step)) break;
       t = std::clamp(t + step, nodes_[i], nodes_[i + 1]);
-      if (std::abs(step) * speed <= 1e-15 * length()) break;
+      if (std::abs(step) * speed <= last_step * length()) break;
     }
     const CurveJet<2> jet = evaluate_jet(*curve_, t);
     const double speed = jet.du.norm();
@@ -88,9 +88,31 @@ class PlanePath {
     return half * sum;
   }
 
+  void add_node(double t, double length) {
+    nodes_.push_back(t);
+    lengths_.push_back(length);
+    speeds_.push_back(evaluate_jet(*curve_, t).du.norm());
+  }
+
+  /// The parameter at the length s by cubic Hermite interpolation of the inverse; where the speed vanishes, linear.
+  double guess(std::size_t i, double s) const {
+    const double span = lengths_[i + 1] - lengths_[i];
+    const double width = nodes_[i + 1] - nodes_[i];
+    if (!(span > 0.0)) return nodes_[i];
+    const double x = (s - lengths_[i]) / span;
+    if (!(speeds_[i] * width > 0.3 * span && speeds_[i + 1] * width > 0.3 * span)) return nodes_[i] + x * width;
+    const double first = span / speeds_[i];
+    const double last = span / speeds_[i + 1];
+    const double bend = first + last - 2.0 * width;
+    const double t = nodes_[i] + x * (first + x * (3.0 * width - 2.0 * first - last + x * bend));
+    return std::clamp(t, nodes_[i], nodes_[i + 1]);
+  }
+
   const NurbsCurve<2>* curve_;
   std::vector<double> nodes_;
+  /// At the nodes.
   std::vector<double> lengths_;
+  std::vector<double> speeds_;
 };
 
 enum class Joint { smooth, bend, corner };
@@ -139,6 +161,9 @@ class SectionFitter {
       PlanePath path(curve);
       if (path.length() > std::max(2.0 * section.largest_gap, 1e-14)) paths_.push_back(std::move(path));
     }
+    if (paths_.empty())
+      for (const NurbsCurve<2>& curve : section.plane_curves.curves)
+        if (PlanePath path(curve); path.length() > 0.0) paths_.push_back(std::move(path));
     if (paths_.empty()) throw GeometryError("fitting a section: the curve is a point");
     for (const PlanePath& path : paths_) length_ += path.length();
   }
@@ -153,7 +178,7 @@ class SectionFitter {
       runs_.back().last = start;
       runs_.back().end = i + 1;
     }
-    for (const Run& run : runs_) append(run, {run.first, run.last});
+    for (const Run& run : runs_) append(run, {run.first, run.last}, at(run, run.first), at(run, run.last));
     return spline();
   }
 
@@ -218,24 +243,24 @@ class SectionFitter {
     return result;
   }
 
-  void append(const Run& run, Interval s) {
-    const Points<2> points = hermite(at(run, s.first), at(run, s.last), s.length());
-    double error = 0.0;
-    for (const double t : {0.15, 0.3, 0.5, 0.7, 0.85})
-      error = std::max(error, (de_casteljau(points, t) - at(run, s.first + t * s.length()).point).norm());
+  void append(const Run& run, Interval s, const ArcJet& from, const ArcJet& to) {
+    const Points<2> points = hermite(from, to, s.length());
+    const ArcJet middle = at(run, s.middle());
+    double error = (de_casteljau(points, 0.5) - middle.point).norm();
     // At a gap the curve jumps; the spline passes through the middle.
-    if (error <= std::max(0.5 * options_.tolerance, 0.75 * section_.largest_gap)) {
+    const double allowed = std::max(0.5 * options_.tolerance, 0.75 * section_.largest_gap);
+    for (const double t : {0.3, 0.7, 0.15, 0.85})
+      if (error <= allowed)
+        error = std::max(error, (de_casteljau(points, t) - at(run, s.first + t * s.length()).point).norm());
+    const bool is_shortest = s.length() < shortest_segment * (run.last - run.first);
+    if (error <= allowed || is_shortest) {
       error_ = std::max(error_, error);
+      tolerance_met_ = tolerance_met_ && error <= allowed;
       segments_.push_back({s, points});
       return;
     }
-    if (s.length() < shortest_segment * (run.last - run.first)) {
-      const Point2 place = points.col(0);
-      throw NumericalError(fmt::format("fitting a section: the tolerance of {:.3g} is not met at ({:.9g}, {:.9g})",
-                                       options_.tolerance, place.x(), place.y()));
-    }
-    append(run, {s.first, s.middle()});
-    append(run, {s.middle(), s.last});
+    append(run, {s.first, s.middle()}, from, middle);
+    append(run, {s.middle(), s.last}, middle, to);
   }
 
   // --- The B-spline -------------------------------------------------------------------------------------------
@@ -250,7 +275,7 @@ class SectionFitter {
   }
 
   SectionSpline spline() const {
-    SectionSpline result{spline_curve(), is_periodic(), {}, length_, error_};
+    SectionSpline result{spline_curve(), is_periodic(), {}, length_, error_, tolerance_met_};
     for (std::size_t i = 0; i < runs_.size(); ++i)
       if (joints_[runs_[i].begin] == Joint::corner && (section_.is_closed || i > 0))
         result.corners.push_back(runs_[i].first);
@@ -314,6 +339,7 @@ class SectionFitter {
   std::vector<Segment> segments_;
   double length_ = 0.0;
   double error_ = 0.0;
+  bool tolerance_met_ = true;
 };
 
 /// Appends samples after `from`, up to and with `to`.

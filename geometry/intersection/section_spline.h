@@ -20,6 +20,8 @@ struct SectionSpline {
   double length = 0.0;
   /// The largest distance from the section curve that was found, at equal arc lengths.
   double error = 0.0;
+  /// Or the error is that of the gaps of the section. If not, segments of 1e-7 of the length do not meet it.
+  bool tolerance_met = true;
 };
 
 struct SectionSplineOptions {
@@ -33,7 +35,7 @@ struct SectionSplineOptions {
 /// bisected until the distance between them is at most half the tolerance: C2 (knots of multiplicity 3), C1 where the
 /// curvature of the section jumps (4), C0 at corners (5). The error of a segment falls as the sixth power of its
 /// length. Across the gaps of the section, which `error` knows of, the spline takes the middle. Throws GeometryError if
-/// the tolerance is not positive, and NumericalError with the place if it cannot be met.
+/// the tolerance is not positive or the curve is a point.
 SectionSpline fit_section(const SectionCurve& curve, const SectionSplineOptions& options);
 
 NurbsCurve<3> to_space(const NurbsCurve<2>& curve, const PlaneFrame& frame);

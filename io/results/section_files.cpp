@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,7 +78,7 @@ class CsvText {
   explicit CsvText(const SectionFamily& family) : family_(family) {
     text_ = "offset,kind,curve,x,y,z,plane_x,plane_y,tangent_x,tangent_y,tangent_z,patch,element,u,v\n";
     int number = 0;
-    for_each_curve(family, [&](std::size_t k, CurveKind kind, const SectionCurve& curve, const SectionSpline&) {
+    for_each_curve(family, [&](std::size_t k, CurveKind kind, const SectionCurve& curve, const auto&) {
       ++number;
       const geometry::PlaneFrame& frame = family_.sections[k].section->frame;
       for (const geometry::SectionSample& sample : sample_section(curve, frame, sag * family_.size))
@@ -121,12 +122,14 @@ struct SpaceCurves {
   std::vector<double> kinds;
 
   explicit SpaceCurves(const SectionFamily& family) {
-    for_each_curve(family, [&](std::size_t k, CurveKind kind, const SectionCurve&, const SectionSpline& spline) {
-      curves.push_back(to_space(spline.curve, family.sections[k].section->frame));
-      names.push_back(fmt::format("{} {:.9g} {}", family.name, family.offsets[k], name_of(kind)));
-      offsets.push_back(family.offsets[k]);
-      kinds.push_back(static_cast<double>(kind));
-    });
+    for_each_curve(family,
+                   [&](std::size_t k, CurveKind kind, const SectionCurve&, const std::optional<SectionSpline>& spline) {
+                     if (!spline) return;
+                     curves.push_back(to_space(spline->curve, family.sections[k].section->frame));
+                     names.push_back(fmt::format("{} {:.9g} {}", family.name, family.offsets[k], name_of(kind)));
+                     offsets.push_back(family.offsets[k]);
+                     kinds.push_back(static_cast<double>(kind));
+                   });
   }
 };
 

@@ -1,6 +1,7 @@
 #include "io/results/section_json.h"
 
 #include <cstddef>
+#include <optional>
 
 namespace isorim::io {
 namespace {
@@ -25,27 +26,29 @@ const std::string& name_of(const SectionFamily& family, int patch) {
 }
 
 /// What all kinds of curves have.
-Json curve_json(const SectionFamily& family, const SectionCurve& curve, const SectionSpline& spline) {
+Json curve_json(const SectionFamily& family, const SectionCurve& curve, const std::optional<SectionSpline>& spline) {
   Json patches = Json::array();
   for (const geometry::SectionPiece& piece : curve.pieces) {
     const std::string& name = name_of(family, piece.patch);
     if (patches.empty() || patches.back() != name) patches.push_back(name);
   }
   Json json;
-  json["length"] = number(spline.length);
+  json["length"] = spline ? number(spline->length) : Json(nullptr);
   json["closed"] = curve.is_closed;
   json["patches"] = std::move(patches);
   json["largest_gap"] = number(curve.largest_gap);
-  json["spline"] = {{"degree", spline.curve.degree()},
-                    {"control_points", spline.curve.knots().basis_count()},
-                    {"periodic", spline.is_periodic},
-                    {"corners", spline.corners.size()},
-                    {"error", number(spline.error)}};
+  json["spline"] = nullptr;
+  if (spline)
+    json["spline"] = {{"degree", spline->curve.degree()},
+                      {"control_points", spline->curve.knots().basis_count()},
+                      {"periodic", spline->is_periodic},
+                      {"corners", spline->corners.size()},
+                      {"error", number(spline->error)}};
   return json;
 }
 
 Json curves_json(const SectionFamily& family, const std::vector<SectionCurve>& curves,
-                 const std::vector<SectionSpline>& splines) {
+                 const std::vector<std::optional<SectionSpline>>& splines) {
   Json list = Json::array();
   for (std::size_t i = 0; i < curves.size(); ++i) {
     Json json = curve_json(family, curves[i], splines[i]);

@@ -53,7 +53,7 @@ TEST(PlaneSections, HaveTheirProperties) {
     const double inner = std::pow(2.0 - half, 4);
     EXPECT_NEAR(found.second_moments(0, 0), 0.25 * pi * (outer - inner), 1e-10);
     ASSERT_EQ(found.loops.size(), 2U);
-    EXPECT_NEAR(found.loops[0].length + found.loops[1].length, 8.0 * pi, 1e-10);
+    EXPECT_NEAR(found.loops[0]->length + found.loops[1]->length, 8.0 * pi, 1e-10);
   }
 }
 
@@ -68,7 +68,7 @@ TEST(PlaneSections, AreTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(one[k].perimeter.value, four[k].perimeter.value);
     ASSERT_EQ(one[k].loops.size(), four[k].loops.size());
     for (std::size_t i = 0; i < one[k].loops.size(); ++i)
-      EXPECT_EQ(one[k].loops[i].curve.homogeneous(), four[k].loops[i].curve.homogeneous());
+      EXPECT_EQ(one[k].loops[i]->curve.homogeneous(), four[k].loops[i]->curve.homogeneous());
   }
 }
 

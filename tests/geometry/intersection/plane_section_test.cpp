@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -144,6 +146,72 @@ TEST(PlaneSection, FindsTheSmallestCircles) {
       const PlaneSection section = cut(sphere(1.0), (1.0 - depth) * n, n);
       ASSERT_EQ(counts(section), (Counts{.loops = 1})) << depth;
       EXPECT_NEAR(section_area(section) / (pi * depth * (2.0 - depth)), 1.0, 1e-14 / depth + 1e-8);
+    }
+  }
+}
+
+/// Planes d inside and outside of those that touch along a curve or in a point.
+TEST(PlaneSection, TellsTheSidesOfTangentPlanes) {
+  struct Contact {
+    std::string name;
+    Boundary<3> solid;
+    Point3 point;
+    Vector3 outward;
+    Counts inside;
+    Counts outside;
+    /// Of the section d inside, to lowest order.
+    std::function<double(double)> area;
+  };
+  const Vector3 x(1, 0, 0);
+  const Vector3 z(0, 0, 1);
+  const Vector3 oblique = Vector3(0.3, 0.5, 0).normalized();
+  const double tilt = std::asin(0.25);
+  // Each neighbourhood of an inner point of contact is a saddle; the area is that of both parts of the tube.
+  const auto strip = [](double d) { return 4.0 * std::sqrt(2.0 * d); };
+  const std::vector<Contact> contacts{
+      {"torus top", torus(2.0, 0.5), 0.5 * z, z, {.loops = 2}, {}, [](double d) { return 8.0 * pi * std::sqrt(d); }},
+      {"torus outside",
+       torus(2.0, 0.5),
+       2.5 * x,
+       x,
+       {.loops = 1},
+       {},
+       [](double d) { return 2.0 * pi * d * std::sqrt(0.5 * 2.5); }},
+      {"torus outside, oblique",
+       torus(2.0, 0.5),
+       2.5 * oblique,
+       oblique,
+       {.loops = 1},
+       {},
+       [](double d) { return 2.0 * pi * d * std::sqrt(0.5 * 2.5); }},
+      {"torus inside", torus(2.0, 0.5), 1.5 * x, x, {.loops = 2}, {.loops = 1}, nullptr},
+      {"torus bitangent",
+       torus(2.0, 0.5),
+       {0, 0, 0},
+       {std::sin(tilt), 0, std::cos(tilt)},
+       {.loops = 1},
+       {.loops = 1},
+       nullptr},
+      {"cylinder", cylinder(1.0, 2.0), x, x, {.loops = 1}, {}, strip},
+      {"cylinder, oblique", cylinder(1.0, 2.0), oblique, oblique, {.loops = 1}, {}, strip},
+      {"cap", cylinder(1.0, 2.0), 2.0 * z, z, {.loops = 1}, {}, [](double) { return pi; }},
+      {"rim", cylinder(1.0, 2.0), {1, 0, 2}, {1, 0, 1}, {.loops = 1}, {}, nullptr},
+  };
+  for (const Contact& contact : contacts) {
+    const Vector3 n = contact.outward.normalized();
+    for (const double d : {1e-6, 1e-9}) {
+      SCOPED_TRACE(fmt::format("{} {}", contact.name, d));
+      const PlaneSection inside = cut(contact.solid, contact.point - d * n, n);
+      EXPECT_EQ(counts(inside), contact.inside);
+      if (contact.area) EXPECT_NEAR(section_area(inside) / contact.area(d), 1.0, 2e-6);
+      EXPECT_EQ(counts(cut(contact.solid, contact.point + d * n, n)), contact.outside);
+    }
+    // So near that it may count as touching, or be moved: what is found has no open curves.
+    const PlaneCutter cutter(contact.solid);
+    for (const double d : {1e-12, -1e-12, 1e-13, -1e-13, 0.0}) {
+      const PlaneSection section = cutter.section(plane_frame(contact.point - d * n, n));
+      EXPECT_TRUE(section.chains.empty()) << contact.name << d;
+      EXPECT_LE(std::abs(section.shift), 4.1e-11 * cutter.size());
     }
   }
 }
