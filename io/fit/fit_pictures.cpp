@@ -66,6 +66,13 @@ svg::Comb comb_of(const FittedCurve& curve, double usual_length) {
     // The natural normal points away from the left, so outward of what is convex and runs counter-clockwise.
     comb.tips.col(i) += part * usual_length * samples.normals.col(i);
   }
+  if (!curve.closed) return comb;
+  // The envelope closes too.
+  const Eigen::Index count = comb.feet.cols();
+  comb.feet.conservativeResize(Eigen::NoChange, count + 1);
+  comb.tips.conservativeResize(Eigen::NoChange, count + 1);
+  comb.feet.col(count) = comb.feet.col(0);
+  comb.tips.col(count) = comb.tips.col(0);
   return comb;
 }
 

@@ -160,18 +160,29 @@ std::string draw_chains(const std::vector<DrawableChain>& chains, const Layout& 
   return result;
 }
 
+/// How many of the last control points are the first ones again, if they are several: p on a periodic knot vector.
+Eigen::Index repeated_points(const geometry::NurbsCurve<2>& curve) {
+  const geometry::Points<2> points = curve.control_points();
+  for (Eigen::Index count = std::min<Eigen::Index>(curve.degree(), points.cols() - 1); count > 1; --count)
+    if (points.rightCols(count) == points.leftCols(count)) return count;
+  return 0;
+}
+
 std::string draw_control_net(const Drawing& drawing, const Layout& layout) {
   std::string polygons;
   std::string points;
   for (const Chain& chain : drawing.chains) {
     for (const auto& curve : chain) {
+      // Edges drawn twice would fill the gaps of their dashes.
+      const Eigen::Index repeated = repeated_points(curve);
       const PathSegment net = layout.to_pixels(curve.control_points());
-      for (Eigen::Index i = 0; i < net.cols(); ++i) {
+      for (Eigen::Index i = 0; i + repeated < net.cols(); ++i) {
         const std::string x = number(net(0, i));
         const std::string y = number(net(1, i));
         polygons += fmt::format("{}{} {}", i == 0 ? 'M' : 'L', x, y);
         points += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"3\"/>\n", x, y);
       }
+      if (repeated > 0) polygons += 'Z';
     }
   }
   return fmt::format(

@@ -215,6 +215,21 @@ TEST(SvgDrawing, TheControlNetIsDrawnWhereItIs) {
   EXPECT_EQ(path_points(with_class(elements, "control polygon").at(0).attribute("d")).size(), 9U);
 }
 
+/// A periodic curve repeats its first control points: its net is a polygon, each edge once.
+TEST(SvgDrawing, TheControlNetOfAPeriodicCurveIsAPolygon) {
+  const std::vector<double> breakpoints{0.0, 0.2, 0.4, 0.6, 0.8, 1.0};
+  geometry::Points<2> points(2, 8);
+  points << 0, 2, 3, 1, -1, 0, 2, 3, 0, 0, 2, 3, 1, 0, 0, 2;
+  Drawing drawing;
+  drawing.chains = {{geometry::NurbsCurve<2>::from_points(geometry::KnotVector::periodic(3, breakpoints), points)}};
+  drawing.show_control_net = true;
+  const auto elements = parse_xml(to_svg(drawing));
+  EXPECT_EQ(inside_class(elements, "control points").size(), 5U);
+  const std::string path = with_class(elements, "control polygon").at(0).attribute("d");
+  EXPECT_EQ(path_points(path).size(), 5U);
+  EXPECT_EQ(path.back(), 'Z');
+}
+
 TEST(SvgDrawing, LoopsOfABoundaryAreRunThroughWithTheRegionOnTheLeft) {
   geometry::OrientedBoundary<2> oriented;
   oriented.boundary.patches = {{"right", geometry::line_segment<2>({1, 0}, {1, 1}), 1},
