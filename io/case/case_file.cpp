@@ -93,6 +93,7 @@ void check_sections(const CaseKeys& keys, int dim, Complaints& complaints) {
       complaints.add(section.where, fmt::format("the name \"{}\" is taken by another section", section.name));
     taken.push_back(section.name);
   }
+  if (dim == 2 && keys.moulds) complaints.add(keys.moulds->where, "moulds are for solids; the shape is plane");
 }
 
 void check_expectations(const CaseKeys& keys, int dim, Complaints& complaints) {

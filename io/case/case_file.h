@@ -9,6 +9,7 @@
 
 #include "io/case/analysis_keys.h"
 #include "io/case/file_shape.h"
+#include "io/case/drawing_keys.h"
 #include "io/case/plane_section_keys.h"
 #include "io/case/schema.h"
 #include "io/case/shape_builder.h"
@@ -87,6 +88,8 @@ struct CaseKeys {
   PropertiesKeys properties;
   std::vector<IntegralKeys> integral;
   std::vector<PlaneSectionKeys> section;
+  std::optional<DrawingKeys> drawings;
+  std::optional<MouldKeys> moulds;
   ExpectKeys expect;
   OutputKeys output;
   std::optional<ConvergenceKeys> convergence;

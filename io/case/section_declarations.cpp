@@ -218,6 +218,8 @@ const Schema<CaseKeys>& schema<CaseKeys>() {
           .key("properties", &CaseKeys::properties, {.text = "How the integrals are computed."})
           .key("integral", &CaseKeys::integral, {.text = "Integrals: [[integral]], any number."})
           .key("section", &CaseKeys::section, {.text = "Plane sections of a solid: [[section]], any number."})
+          .key("drawings", &CaseKeys::drawings, {.text = "Workshop drawings."})
+          .key("moulds", &CaseKeys::moulds, {.text = "Templates of the boards of a mould."})
           .key("expect", &CaseKeys::expect, {.text = "Expected values."})
           .key("output", &CaseKeys::output, {.text = "What is written."})
           .key("convergence", &CaseKeys::convergence, {.text = "A study of fixed Gauss rules."})

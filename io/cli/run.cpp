@@ -1,6 +1,7 @@
 #include <chrono>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "io/fit/fit_pictures.h"
 #include "io/results/compute.h"
 #include "io/results/convergence.h"
+#include "io/results/drawings.h"
 #include "io/results/hdf5.h"
 #include "io/results/json.h"
 #include "io/results/pictures.h"
@@ -47,6 +49,8 @@ void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io
   if (output.svg) io::write_boundary_svg(folder / "boundary.svg", report.title, model);
   if (output.svg) io::write_tmesh_svgs(folder, file.shape);
   if (report.sections) io::write_sections(folder, *report.sections, output);
+  for (std::string& message : io::write_drawings(folder, file, model, report.threads))
+    report.warnings.push_back(std::move(message));
   if (file.fit) io::write_fit_points(folder / "fit_points.csv", *file.fit);
   if (file.fit && output.svg) io::write_fit_svg(folder / "fit.svg", report.title, *file.fit);
   if (file.keys.convergence) {
