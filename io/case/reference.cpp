@@ -13,9 +13,9 @@
 namespace isorim::io {
 namespace {
 
-/// Every table that a case file can hold, the case itself first, each before what it holds.
-std::vector<const Description*> all_descriptions() {
-  std::vector<const Description*> found{&schema<CaseKeys>().description()};
+/// Every table that `root` can hold, itself first, each before what it holds.
+std::vector<const Description*> all_descriptions(const Description& root) {
+  std::vector<const Description*> found{&root};
   for (std::size_t i = 0; i < found.size(); ++i) {
     for (const KeyDescription& key : found[i]->keys) {
       for (const Description* nested : key.nested ? key.nested() : std::vector<const Description*>{}) {
@@ -27,9 +27,9 @@ std::vector<const Description*> all_descriptions() {
 }
 
 /// The same declarations stand in several tables (a circle as a curve, as a loop): once is enough.
-std::vector<const Description*> distinct_descriptions() {
+std::vector<const Description*> distinct_descriptions(const Description& root = schema<CaseKeys>().description()) {
   std::vector<const Description*> distinct;
-  for (const Description* description : all_descriptions()) {
+  for (const Description* description : all_descriptions(root)) {
     const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const Description* other) {
       return other->name == description->name && other->text == description->text;
     });
@@ -150,7 +150,20 @@ std::string case_reference_markdown() {
       "# Case files\n\nA case file is TOML. Unknown keys are errors. Where a real is asked an integer will do; numbers "
       "must be finite.\nThe type of a shape is told by its key `type`. Points have two coordinates in the plane and "
       "three in space.\n";
-  for (const Description* description : distinct_descriptions()) text += markdown_table(*description);
+  return text + reference_markdown(schema<CaseKeys>().description());
+}
+
+std::string reference_text(const Description& root) {
+  std::string text;
+  for (const Description* description : distinct_descriptions(root)) {
+    text += (text.empty() ? "" : "\n") + topic_text(*description);
+  }
+  return text;
+}
+
+std::string reference_markdown(const Description& root) {
+  std::string text;
+  for (const Description* description : distinct_descriptions(root)) text += markdown_table(*description);
   return text;
 }
 

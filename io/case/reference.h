@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "io/case/schema.h"
+
 /// Help texts and the reference, made from the declarations that the reader uses.
 namespace isorim::io {
 
@@ -18,5 +20,9 @@ std::vector<std::string> case_topics();
 
 /// Everything, as Markdown.
 std::string case_reference_markdown();
+
+/// All keys of a table and of the tables in it, for the terminal and as Markdown.
+std::string reference_text(const Description& root);
+std::string reference_markdown(const Description& root);
 
 }  // namespace isorim::io

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/case/value_edit.h"
 
 namespace isorim::io {
 
@@ -83,18 +84,6 @@ void relocate(Value& value, const Place& place) {
   }
 }
 
-Value override_value(const std::string& text, const Place& place) {
-  Value result{text, place};
-  try {
-    const Value parsed = parse_toml("value = " + text, "");
-    if (const Value* value = parsed.find("value"); value && parsed.as<Value::Table>()->size() == 1) result = *value;
-  } catch (const InputError&) {
-    // Not TOML: plain text, as a shell user writes it.
-  }
-  relocate(result, place);
-  return result;
-}
-
 bool is_bare_key(std::string_view key) {
   return !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
@@ -128,8 +117,6 @@ std::string toml_real(double value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
-std::string inline_toml(const Value& value);
-
 std::string inline_list(const Value::Array& list) {
   std::vector<std::string> items;
   std::transform(list.begin(), list.end(), std::back_inserter(items), inline_toml);
@@ -153,10 +140,6 @@ struct InlineWriter {
   std::string operator()(const Value::Table& value) const { return inline_table(value); }
 };
 
-std::string inline_toml(const Value& value) {
-  return std::visit(InlineWriter{}, value.data);
-}
-
 bool is_list_of_tables(const Value& value) {
   const auto* list = value.as<Value::Array>();
   return list && !list->empty() &&
@@ -178,25 +161,46 @@ std::string describe(const Value& value) {
   return std::visit(Describer{}, value.data);
 }
 
+std::string inline_toml(const Value& value) {
+  return std::visit(InlineWriter{}, value.data);
+}
+
+Value value_from_text(std::string_view text, const Place& place) {
+  const std::string content = trimmed(text);
+  Value result{content, place};
+  try {
+    const Value parsed = parse_toml("value = " + content, "");
+    if (const Value* value = parsed.find("value"); value && parsed.as<Value::Table>()->size() == 1) result = *value;
+  } catch (const InputError&) {
+    // Not TOML: plain text, as a shell user writes it.
+  }
+  relocate(result, place);
+  return result;
+}
+
+void set_value(Value& root, std::string_view path, Value value, const std::string& what) {
+  const std::vector<std::string> parts = split_path(trimmed(path));
+  Value* target = &root;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i].empty()) throw InputError(what + ": the path has an empty part; expected section.key");
+    if (target->as<Value::Array>()) {
+      target = &list_entry(*target, parts[i], what);
+    } else if (target->as<Value::Table>()) {
+      target = &table_entry(*target, parts[i], value.place);
+    } else {
+      throw InputError(fmt::format("{}: \"{}\" is {}, so \"{}\" has no place in it", what, parts[i - 1],
+                                   describe(*target), parts[i]));
+    }
+  }
+  *target = std::move(value);
+}
+
 void apply_override(Value& root, const std::string& assignment) {
   const auto equals = assignment.find('=');
   const std::string option = "--set " + assignment;
   if (equals == std::string::npos) throw InputError(option + ": found no '='; expected key=value");
   const Place place{std::make_shared<const std::string>(option)};
-  const std::vector<std::string> parts = split_path(trimmed(assignment.substr(0, equals)));
-  Value* target = &root;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (parts[i].empty()) throw InputError(option + ": the path has an empty part; expected section.key=value");
-    if (target->as<Value::Array>()) {
-      target = &list_entry(*target, parts[i], option);
-    } else if (target->as<Value::Table>()) {
-      target = &table_entry(*target, parts[i], place);
-    } else {
-      throw InputError(fmt::format("{}: \"{}\" is {}, so \"{}\" has no place in it", option, parts[i - 1],
-                                   describe(*target), parts[i]));
-    }
-  }
-  *target = override_value(trimmed(assignment.substr(equals + 1)), place);
+  set_value(root, assignment.substr(0, equals), value_from_text(assignment.substr(equals + 1), place), option);
 }
 
 std::string to_toml(const Value& root) {

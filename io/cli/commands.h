@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
@@ -7,6 +8,9 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "io/case/case_file.h"
+#include "io/results/compute.h"
 
 /// The commands of the program, apart from how they are spelled on the command line. Each returns its exit status and
 /// throws what ends it early.
@@ -26,6 +30,38 @@ struct RunArguments {
 };
 /// Computes a case, prints the table and writes the files that it asks for.
 int run_case(const RunArguments& arguments, std::ostream& out, std::ostream& err);
+
+/// Computes a case that has been read since `start`, and writes its files if there is a folder for them.
+io::Report compute_and_write(const io::CaseFile& file, std::chrono::steady_clock::time_point start,
+                             const io::RunOptions& options, const std::optional<std::filesystem::path>& folder);
+
+/// Why the exit status of a run is 1 or 3, a line each.
+std::vector<std::string> shortfalls(const io::Report& report);
+
+enum class SweepAction { run, list, merge };
+
+/// What to do with a folder that holds the sweep already.
+enum class EarlierCases { refuse, resume, discard };
+
+enum class OutputFormat { text, json };
+
+struct SweepArguments {
+  std::filesystem::path sweep_file;
+  /// out/<sweep name>/ if absent. A shard's folder is in it.
+  std::optional<std::filesystem::path> output;
+  /// Cases at a time; 0: as many as there are processors.
+  int processes = 0;
+  /// "K/N".
+  std::optional<std::string> shard;
+  SweepAction action = SweepAction::run;
+  EarlierCases earlier = EarlierCases::refuse;
+  /// Runs cases again that have failed.
+  bool retries = false;
+  OutputFormat format = OutputFormat::text;
+};
+/// Runs the cases of a sweep, each in a process of its own, and writes their results together; or lists the cases, or
+/// joins the folders of shards. Ctrl-C ends the cases that run; what has ended is kept.
+int run_sweep(const SweepArguments& arguments, std::ostream& out, std::ostream& err);
 
 struct VerifyArguments {
   /// A folder, or one case file; cases/verification if absent.
@@ -103,6 +139,9 @@ void make_folder(const std::filesystem::path& folder);
 
 /// Prints each line of a message as "isorim: line".
 void print_message(std::ostream& err, std::string_view message);
+
+/// 2 for bad input and shapes, 3 for whatever else.
+int exit_status_of(const std::exception& error);
 
 /// What an exception that ends a command means: its message on `err`, its exit status.
 int report_failure(const std::exception& error, std::ostream& err);

@@ -34,4 +34,8 @@ HeldInterrupts::~HeldInterrupts() {
   if (pending != 0) raise(pending);
 }
 
+bool HeldInterrupts::is_pending() {
+  return pending != 0;
+}
+
 }  // namespace isorim::cli

@@ -10,6 +10,9 @@ class HeldInterrupts {
   ~HeldInterrupts();
   HeldInterrupts(const HeldInterrupts&) = delete;
   HeldInterrupts& operator=(const HeldInterrupts&) = delete;
+
+  /// Whether one is waiting.
+  static bool is_pending();
 };
 
 }  // namespace isorim::cli

@@ -35,11 +35,15 @@ void print_message(std::ostream& err, std::string_view message) {
   }
 }
 
-int report_failure(const std::exception& error, std::ostream& err) {
-  print_message(err, error.what());
+int exit_status_of(const std::exception& error) {
   const bool is_input =
       dynamic_cast<const InputError*>(&error) != nullptr || dynamic_cast<const GeometryError*>(&error) != nullptr;
   return is_input ? 2 : 3;
+}
+
+int report_failure(const std::exception& error, std::ostream& err) {
+  print_message(err, error.what());
+  return exit_status_of(error);
 }
 
 ProgressLine::ProgressLine(std::ostream& err) : err_(err), start_(now()) {}

@@ -15,6 +15,7 @@
 #include "io/cli/commands.h"
 #include "io/cli/completion.h"
 #include "io/results/report.h"
+#include "io/sweep/sweep_keys.h"
 
 namespace isorim::cli {
 namespace {
@@ -27,10 +28,20 @@ struct HelpArguments {
   std::string completion;
 };
 
+struct SweepFlags {
+  bool resume = false;
+  bool restart = false;
+  bool dry_run = false;
+  bool merge = false;
+  bool json = false;
+};
+
 /// CLI11 keeps references to what it fills.
 struct Arguments {
   RunArguments run;
   bool quiet = false;
+  SweepArguments sweep;
+  SweepFlags sweep_flags;
   VerifyArguments verify;
   CheckArguments check;
   bool json = false;
@@ -84,6 +95,25 @@ void declare_picture(CLI::App& app, PictureArguments& arguments) {
   add_threads(picture, arguments.threads);
 }
 
+void declare_sweep(CLI::App& sweep, SweepArguments& arguments, SweepFlags& flags) {
+  sweep.add_option("SWEEP", arguments.sweep_file, "Sweep file (.toml); its keys stand below")->required();
+  sweep.add_option("-o,--output", arguments.output, "Output folder; out/<sweep name> if absent")->type_name("DIR");
+  sweep.add_option("-j,--processes", arguments.processes, "Cases at a time; as many as processors if absent")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
+  sweep.add_option("--shard", arguments.shard, "Runs the K-th of N parts of the cases, in DIR/shard_K_of_N")
+      ->type_name("K/N");
+  sweep.add_flag("--resume", flags.resume, "Goes on where the sweep in the output folder has stopped");
+  sweep.add_flag("--restart", flags.restart, "Discards what the output folder holds")->excludes("--resume");
+  sweep.add_flag("--retry", arguments.retries, "With --resume: runs failed cases again")->needs("--resume");
+  sweep.add_flag("--merge", flags.merge, "Joins the shards in the output folder, and tells which cases are missing")
+      ->excludes("--resume")
+      ->excludes("--restart")
+      ->excludes("--shard");
+  sweep.add_flag("--dry-run", flags.dry_run, "Lists the cases")->excludes("--merge");
+  sweep.add_flag("--json", flags.json, "Prints the summary (or the list) as JSON");
+}
+
 void declare(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version", std::string(io::program_version()), "Prints the version");
   app.require_subcommand(0, 1);
@@ -93,6 +123,9 @@ void declare(CLI::App& app, Arguments& arguments) {
   run.add_option("-o,--output", arguments.run.output, "Output folder; out/<case name> if absent")->type_name("DIR");
   add_threads(run, arguments.run.threads);
   run.add_flag("-q,--quiet", arguments.quiet, "Prints no table");
+
+  CLI::App& sweep = *app.add_subcommand("sweep", "Runs a case for many values of its keys");
+  declare_sweep(sweep, arguments.sweep, arguments.sweep_flags);
 
   CLI::App& verify = *app.add_subcommand("verify", "Runs every case with [expect] below a folder, as one table");
   verify.add_option("DIR", arguments.verify.where, "Folder or case file; cases/verification if absent");
@@ -140,16 +173,9 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
-/// Commands of the design that come later.
-bool is_later(const std::string& command) {
-  const std::vector<std::string> later{"sweep"};
-  return std::find(later.begin(), later.end(), command) != later.end();
-}
-
 void check_command(const CLI::App& app, const std::string& word, const std::string& what) {
   const std::vector<std::string> names = command_names(app);
   if (std::find(names.begin(), names.end(), word) != names.end()) return;
-  if (is_later(word)) throw InputError(fmt::format("the command \"{}\" is not available in this version", word));
   throw InputError(fmt::format("found the {} \"{}\"{}; expected one of {}", what, word, io::did_you_mean(word, names),
                                fmt::join(names, ", ")));
 }
@@ -172,8 +198,18 @@ int print_help(const HelpArguments& arguments, std::ostream& out) {
   } else {
     check_command(app, arguments.topic.front(), "topic");
     out << app.get_subcommand(arguments.topic.front())->help("isorim");
+    if (arguments.topic.front() == "sweep") out << '\n' << io::sweep_reference();
   }
   return 0;
+}
+
+int dispatch_sweep(SweepArguments& arguments, const SweepFlags& flags, std::ostream& out, std::ostream& err) {
+  if (flags.merge) arguments.action = SweepAction::merge;
+  if (flags.dry_run) arguments.action = SweepAction::list;
+  if (flags.resume) arguments.earlier = EarlierCases::resume;
+  if (flags.restart) arguments.earlier = EarlierCases::discard;
+  if (flags.json) arguments.format = OutputFormat::json;
+  return run_sweep(arguments, out, err);
 }
 
 int dispatch(CLI::App& app, Arguments& arguments, std::ostream& out, std::ostream& err) {
@@ -181,6 +217,7 @@ int dispatch(CLI::App& app, Arguments& arguments, std::ostream& out, std::ostrea
     arguments.run.verbosity = arguments.quiet ? Verbosity::quiet : Verbosity::normal;
     return run_case(arguments.run, out, err);
   }
+  if (app.got_subcommand("sweep")) return dispatch_sweep(arguments.sweep, arguments.sweep_flags, out, err);
   if (app.got_subcommand("verify")) return verify_cases(arguments.verify, out, err);
   if (app.got_subcommand("check")) {
     arguments.check.format = arguments.json ? CheckFormat::json : CheckFormat::text;

@@ -64,50 +64,55 @@ void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io
   io::write_json(folder / "results.json", report);
 }
 
-/// Why the exit status is 1 or 3, for whoever sees no table.
-void print_shortfalls(const io::Report& report, const std::string& file, std::ostream& err) {
+}  // namespace
+
+std::vector<std::string> shortfalls(const io::Report& report) {
+  std::vector<std::string> lines;
   std::vector<std::string> unreached;
   for (const auto* list : {&report.properties, &report.integrals}) {
     for (const io::Quantity& quantity : *list) {
       if (quantity.status == quadrature::Status::tolerance_not_reached) unreached.push_back(quantity.name);
     }
   }
-  if (!unreached.empty()) {
-    print_message(err, fmt::format("{}: the tolerance is not reached: {}", file, fmt::join(unreached, ", ")));
-  }
+  if (!unreached.empty()) lines.push_back(fmt::format("the tolerance is not reached: {}", fmt::join(unreached, ", ")));
   if (report.analysis && report.analysis->adaptive && !report.analysis->adaptive->is_reached())
-    print_message(err, fmt::format("{}: {}", file, report.analysis->adaptive->shortfall));
+    lines.push_back(report.analysis->adaptive->shortfall);
   for (const io::ExpectationResult& result : report.expectations) {
     if (result.met) continue;
     const std::string off = result.difference ? fmt::format("off by {:.2g}", *result.difference) : "without a value";
-    print_message(err, fmt::format("{}: the expectation of {} is missed: {}; expected at most atol = {:g}, rtol = {:g}",
-                                   file, result.quantity, off, result.atol, result.rtol));
+    lines.push_back(fmt::format("the expectation of {} is missed: {}; expected at most atol = {:g}, rtol = {:g}",
+                                result.quantity, off, result.atol, result.rtol));
   }
+  return lines;
 }
 
-}  // namespace
+io::Report compute_and_write(const io::CaseFile& file, Clock::time_point start, const io::RunOptions& options,
+                             const std::optional<std::filesystem::path>& folder) {
+  const io::AnyModel model = io::build_model(file);
+  const double read = seconds_since(start);
+  io::Report report = io::compute(file, model, options);
+  const io::Convergence study = io::study_convergence(file, model, options);
+  report.timings.read = read;
+  if (folder) write_outputs(file, model, study, report, *folder);
+  return report;
+}
 
 int run_case(const RunArguments& arguments, std::ostream& out, std::ostream& err) {
   const Clock::time_point start = Clock::now();
   const io::CaseFile file =
       io::read_case_or_cad(arguments.case_file, arguments.overrides, {.threads = arguments.threads});
-  const io::AnyModel model = io::build_model(file);
-  const double read = seconds_since(start);
+  const std::filesystem::path folder = arguments.output.value_or(std::filesystem::path("out") / file.name());
   io::Report report;
-  io::Convergence study;
   {
     ProgressLine progress(err);
-    const io::RunOptions options{arguments.threads, progress.reporter()};
-    report = io::compute(file, model, options);
-    study = io::study_convergence(file, model, options);
+    report = compute_and_write(file, start, {arguments.threads, progress.reporter()}, folder);
   }
-  report.timings.read = read;
-  const std::filesystem::path folder = arguments.output.value_or(std::filesystem::path("out") / file.name());
-  write_outputs(file, model, study, report, folder);
   for (const std::string& warning : report.warnings) {
     print_message(err, fmt::format("{}: {}", arguments.case_file.string(), warning));
   }
-  print_shortfalls(report, arguments.case_file.string(), err);
+  for (const std::string& line : shortfalls(report)) {
+    print_message(err, fmt::format("{}: {}", arguments.case_file.string(), line));
+  }
   if (arguments.verbosity == Verbosity::normal) {
     out << io::results_text(report) << fmt::format("  results in {}\n", folder.string());
   }

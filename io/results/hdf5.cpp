@@ -9,127 +9,16 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-#include <hdf5.h>
-
 #include "geometry/errors.h"
 #include "io/analysis/analysis.h"
 #include "io/atomic_file.h"
+#include "io/results/hdf5_parts.h"
 
 namespace isorim::io {
+
+using namespace hdf5;
+
 namespace {
-
-/// A handle of the library, closed at the end of its scope. Throws when the library gives none.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t), std::string_view what) : id_(id), close_(close) {
-    if (id_ < 0) throw InputError(fmt::format("HDF5 failed: {}", what));
-  }
-  ~Handle() { close_(id_); }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor): it is one for the C functions
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-/// Keeps the library from printing.
-class SilentErrors {
- public:
-  SilentErrors() {
-    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~SilentErrors() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-  SilentErrors(const SilentErrors&) = delete;
-  SilentErrors& operator=(const SilentErrors&) = delete;
-
- private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
-};
-
-void check(herr_t status, std::string_view what) {
-  if (status < 0) throw InputError(fmt::format("HDF5 failed: {}", what));
-}
-
-template <class T>
-hid_t native_type();
-template <>
-hid_t native_type<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-template <>
-hid_t native_type<std::int64_t>() {
-  return H5T_NATIVE_INT64;
-}
-template <>
-hid_t native_type<std::int32_t>() {
-  return H5T_NATIVE_INT32;
-}
-template <>
-hid_t native_type<std::int8_t>() {
-  return H5T_NATIVE_INT8;
-}
-
-Handle open_group(hid_t parent, const std::string& name) {
-  return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "making group " + name};
-}
-
-/// A dataset of the given shape; rank 0 is a single number.
-template <class T>
-void write_dataset(hid_t group, const std::string& name, const std::vector<T>& values,
-                   const std::vector<hsize_t>& shape) {
-  const Handle space(
-      shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
-      H5Sclose, "space of " + name);
-  const Handle set(H5Dcreate2(group, name.c_str(), native_type<T>(), space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                   H5Dclose, "making dataset " + name);
-  if (values.empty()) return;
-  check(H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "writing dataset " + name);
-}
-
-template <class T>
-void write_attribute(hid_t object, const std::string& name, T value) {
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "space of " + name);
-  const Handle attribute(H5Acreate2(object, name.c_str(), native_type<T>(), space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                         "making attribute " + name);
-  check(H5Awrite(attribute, native_type<T>(), &value), "writing attribute " + name);
-}
-
-/// UTF-8 of variable length.
-hid_t make_text_type() {
-  const hid_t type = H5Tcopy(H5T_C_S1);
-  check(H5Tset_size(type, H5T_VARIABLE), "text type");
-  check(H5Tset_cset(type, H5T_CSET_UTF8), "text type");
-  return type;
-}
-
-void write_text_attribute(hid_t object, const std::string& name, std::string_view text) {
-  const Handle type(make_text_type(), H5Tclose, "text type");
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "space of " + name);
-  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                         "making attribute " + name);
-  const std::string copy(text);
-  const char* pointer = copy.c_str();
-  check(H5Awrite(attribute, type, &pointer), "writing attribute " + name);
-}
-
-/// A list of texts, or a single one if `texts` has one and the rank is 0.
-void write_texts(hid_t group, const std::string& name, const std::vector<std::string>& texts,
-                 const std::vector<hsize_t>& shape) {
-  const Handle type(make_text_type(), H5Tclose, "text type");
-  const Handle space(
-      shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
-      H5Sclose, "space of " + name);
-  const Handle set(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose,
-                   "making dataset " + name);
-  std::vector<const char*> pointers;
-  for (const std::string& text : texts) pointers.push_back(text.c_str());
-  check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()), "writing dataset " + name);
-}
 
 // --- Results --------------------------------------------------------------------------------------------------
 
