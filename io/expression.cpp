@@ -14,6 +14,7 @@
 #include <muParser.h>
 
 #include "geometry/errors.h"
+#include "io/expression_names.h"
 
 namespace isorim::io {
 namespace {
@@ -249,12 +250,16 @@ std::string built_in_meaning(const std::string& name) {
   for (const char* result : {"u", "q", "ux", "uy", "uz", "tx", "ty", "tz"}) {
     if (name == result) return "a result of analyses";
   }
+  return constant_or_function(name);
+}
+
+}  // namespace
+
+std::string constant_or_function(const std::string& name) {
   if (name == "pi" || name == "e") return "a constant";
   const mu::Parser parser;
   return parser.GetFunDef().contains(name) ? "a function" : "";
 }
-
-}  // namespace
 
 template <int Dim>
 quadrature::IntegrandFactory<Dim> compile_integrand(const std::string& text, ExpressionScope scope,

@@ -159,7 +159,8 @@ void declare(CLI::App& app, Arguments& arguments) {
 
   CLI::App& help = *app.add_subcommand("help", "Explains a command (help run) or case files (help case [SECTION])");
   help.add_option("TOPIC", arguments.help.topic, "A command; or case, with a section or type")->expected(0, 2);
-  help.add_flag("--markdown", arguments.help.markdown, "Prints the reference of case files as Markdown");
+  help.add_flag("--markdown", arguments.help.markdown,
+                "Prints the reference of case files (or with sweep of sweep files) as Markdown");
   help.add_option("--completion", arguments.help.completion, "Prints a script that completes command lines: bash, zsh")
       ->type_name("SHELL")
       ->check(CLI::IsMember({"bash", "zsh"}));
@@ -185,8 +186,9 @@ int print_help(const HelpArguments& arguments, std::ostream& out) {
   CLI::App app(about, "isorim");
   Arguments unused;
   declare(app, unused);
+  const bool is_sweep = !arguments.topic.empty() && arguments.topic.front() == "sweep";
   if (arguments.markdown) {
-    out << io::case_reference_markdown();
+    out << (is_sweep ? io::sweep_reference_markdown() : io::case_reference_markdown());
   } else if (!arguments.completion.empty()) {
     const Shell shell = arguments.completion == "bash" ? Shell::bash : Shell::zsh;
     out << completion_script(app, shell, io::case_topics());
@@ -198,7 +200,7 @@ int print_help(const HelpArguments& arguments, std::ostream& out) {
   } else {
     check_command(app, arguments.topic.front(), "topic");
     out << app.get_subcommand(arguments.topic.front())->help("isorim");
-    if (arguments.topic.front() == "sweep") out << '\n' << io::sweep_reference();
+    if (is_sweep) out << '\n' << io::sweep_reference();
   }
   return 0;
 }

@@ -143,14 +143,17 @@ class SweepRunner {
   SweepRunner(const SweepArguments& arguments, const fs::path& folder, io::SweepResults& results, std::ostream& err)
       : arguments_(arguments), folder_(folder), results_(results), err_(err) {}
 
-  /// False if it was ended early.
-  bool run(io::Journal& journal) {
+  /// What the user has been told already of the results as a whole.
+  const std::vector<std::string>& told() const { return told_; }
+
+  /// Returns when all cases have ended, or when it was ended early.
+  void run(io::Journal& journal) {
     std::vector<std::size_t> tasks = results_.share();
     std::erase_if(tasks, [&](std::size_t index) {
       const io::CaseRecord* record = results_.find(index);
       return record && !(arguments_.retries && record->is_failed());
     });
-    if (tasks.empty()) return true;
+    if (tasks.empty()) return;
     const std::size_t share = results_.share().size();
     SweepProgress progress(share, share - tasks.size(), err_);
     const io::ProcessOptions options = process_options(tasks.size(), progress);
@@ -158,7 +161,7 @@ class SweepRunner {
     const SweepCaseOptions case_options{results_.plan, folder_, std::max(1, processors() / options.processes)};
     const auto work = [&](std::size_t index) { return io::record_json(run_sweep_case(case_options, index)); };
     const auto finished = [&](const io::TaskEnd& end) { return record_end(end, journal, progress); };
-    return io::run_in_processes(tasks, work, finished, options);
+    io::run_in_processes(tasks, work, finished, options);
   }
 
  private:
@@ -196,7 +199,8 @@ class SweepRunner {
     if (is_first) {
       // Now, not after hours.
       has_results_ = true;
-      for (const std::string& message : io::unknown_results(results_)) print_message(err_, message);
+      told_ = io::unknown_results(results_);
+      for (const std::string& message : told_) print_message(err_, message);
     }
     return failed && results_.plan->keys.run.stop_on_failure ? io::AfterTask::begin_no_more : io::AfterTask::go_on;
   }
@@ -206,6 +210,7 @@ class SweepRunner {
   io::SweepResults& results_;
   std::ostream& err_;
   bool has_results_ = false;
+  std::vector<std::string> told_;
 };
 
 std::string summary_text(const io::SweepResults& results, const fs::path& folder) {
@@ -236,9 +241,11 @@ std::string number_list(const std::vector<std::size_t>& indices) {
 
 /// Writes the files of the whole and the summary.
 int conclude(const SweepArguments& arguments, const io::SweepResults& results, const fs::path& folder,
-             std::ostream& out, std::ostream& err) {
+             const std::vector<std::string>& told, std::ostream& out, std::ostream& err) {
   const std::vector<std::string> messages = io::write_sweep_files(folder, results);
-  for (const std::string& message : messages) print_message(err, message);
+  for (const std::string& message : messages) {
+    if (std::ranges::find(told, message) == told.end()) print_message(err, message);
+  }
   const std::vector<std::size_t> missing = results.missing();
   if (!missing.empty()) {
     print_message(err, fmt::format("{} cases of {} are missing: {}; --resume runs them", missing.size(),
@@ -264,14 +271,15 @@ int run_sweep(const SweepArguments& arguments, std::ostream& out, std::ostream& 
   const HeldInterrupts held;
   if (arguments.action == SweepAction::merge) {
     const io::SweepResults results = io::merge_shards(plan, folder);
-    const int status = conclude(arguments, results, folder, out, err);
+    const int status = conclude(arguments, results, folder, {}, out, err);
     return results.missing().empty() ? status : 2;
   }
   make_folder(folder);
   io::SweepResults results{&plan, shard, {}};
   io::Journal journal = open_journal(folder, arguments, results);
-  SweepRunner(arguments, folder, results, err).run(journal);
-  return conclude(arguments, results, folder, out, err);
+  SweepRunner runner(arguments, folder, results, err);
+  runner.run(journal);
+  return conclude(arguments, results, folder, runner.told(), out, err);
 }
 
 }  // namespace isorim::cli

@@ -40,13 +40,11 @@ std::vector<std::vector<Value>> range_entries(const ParameterKeys& parameter, Co
   const double to = parameter.to->value;
   const bool ends = parameter.from->is_integer && parameter.to->is_integer;
   if (parameter.step) {
-    const auto count = step_count(parameter, complaints);
-    const double last = count ? std::fma(static_cast<double>(*count - 1), parameter.step->value, from) : from;
-    const double stop = std::abs(last - to) < 1e-9 * std::abs(to - from) ? to : last;
-    for (std::size_t i = 0; i < count.value_or(0); ++i) {
-      const double fraction = *count > 1 ? static_cast<double>(i) / static_cast<double>(*count - 1) : 0.0;
-      entries.push_back({number_value(range_value(from, stop, Spacing::linear, fraction),
-                                      ends && parameter.step->is_integer, parameter.where.place)});
+    const std::size_t count = step_count(parameter, complaints).value_or(0);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double fraction = static_cast<double>(i) * parameter.step->value / (to - from);
+      const double value = range_value(from, to, Spacing::linear, fraction > 1.0 - 1e-9 ? 1.0 : fraction);
+      entries.push_back({number_value(value, ends && parameter.step->is_integer, parameter.where.place)});
     }
     return entries;
   }

@@ -13,6 +13,7 @@
 #include "io/case/case_file.h"
 #include "io/case/value_edit.h"
 #include "io/expression.h"
+#include "io/expression_names.h"
 #include "io/file_bytes.h"
 #include "io/sweep/axes.h"
 
@@ -34,15 +35,12 @@ void check_name(const SweepColumn& column, const std::vector<SweepColumn>& befor
     return;
   }
   if (std::ranges::find(sweep_table_columns(), column.name) != sweep_table_columns().end()) {
-    complaints.add(column.where, fmt::format("the name \"{}\" is a column of every table; give another as \"name\"",
-                                             column.name));
+    complaints.add(column.where,
+                   fmt::format("the name \"{}\" is a column of every table; give another as \"name\"", column.name));
   }
-  try {
-    compile_function(column.name, {column.name}, 0);
-  } catch (const InputError&) {
-    complaints.add(
-        column.where,
-        fmt::format("the name \"{}\" is a constant or function of expressions; expected another", column.name));
+  if (const std::string meaning = constant_or_function(column.name); !meaning.empty()) {
+    complaints.add(column.where,
+                   fmt::format("the name \"{}\" is {} of expressions; expected another", column.name, meaning));
   }
   for (const SweepColumn& other : before) {
     if (other.name == column.name) {
@@ -275,8 +273,8 @@ Value case_tree(const SweepPlan& plan, std::size_t index) {
 }
 
 const std::vector<std::string>& sweep_table_columns() {
-  static const std::vector<std::string> names{"case",    "status",  "exit_status", "expectations_met", "expectations_missed",
-                                              "message", "seconds", "peak_memory"};
+  static const std::vector<std::string> names{
+      "case", "status", "exit_status", "expectations_met", "expectations_missed", "message", "seconds", "peak_memory"};
   return names;
 }
 

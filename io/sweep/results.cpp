@@ -28,10 +28,10 @@ bool has_part(std::string_view name, std::string_view part) {
 /// What a table shows without being asked: nothing that differs from run to run, so that it is the same each time.
 bool is_usual(const std::string& name) {
   if (is_below(name, "analysis")) return is_below(name, "analysis.unknowns") || is_below(name, "analysis.errors");
-  for (const char* part : {"error", "evaluations", "seconds", "times", "timings"}) {
+  for (const char* part : {"error", "evaluations", "seconds", "times", "timings", "sections"}) {
     if (has_part(name, part)) return false;
   }
-  for (const char* section : {"geometry", "cad", "sections", "expectations", "threads"}) {
+  for (const char* section : {"geometry", "cad", "expectations", "threads"}) {
     if (is_below(name, section)) return false;
   }
   return true;

@@ -18,12 +18,12 @@ double rounded(double value) {
   return result;
 }
 
-/// base^fraction from square roots: IEEE 754 rounds them alike everywhere, pow it does not. base is the root of the
-/// ratio of the range's ends, which may itself overflow. Relative error below 1e-14.
-double power(double root, double fraction) {
-  double result = 1.0;
+/// from (to / from)^fraction by square roots, which IEEE 754 rounds alike everywhere; pow it does not. Relative error
+/// below 1e-14. Neither the ratio nor its powers are formed, which may overflow.
+double geometric(double from, double to, double fraction) {
+  double result = from;
   double rest = 2.0 * fraction;
-  double factor = root;
+  double factor = std::sqrt(to) / std::sqrt(from);
   for (int bit = 0; bit < 60 && rest > 0.0; ++bit) {
     if (rest >= 1.0) {
       result *= factor;
@@ -79,8 +79,7 @@ double range_value(double from, double to, Spacing spacing, double fraction) {
   if (fraction <= 0.0) return from;
   if (fraction >= 1.0) return to;
   // fma, so that no compiler's choice of fusing matters.
-  const double value = spacing == Spacing::linear ? std::fma(to - from, fraction, from)
-                                                  : from * power(std::sqrt(to) / std::sqrt(from), fraction);
+  const double value = spacing == Spacing::linear ? std::fma(to - from, fraction, from) : geometric(from, to, fraction);
   return std::clamp(rounded(value), std::min(from, to), std::max(from, to));
 }
 

@@ -160,15 +160,13 @@ TEST_F(Journals, TellWhatIsDifferent) {
                                                       "the base case: geometry.type was absent, is \"sphere\""));
   now = identity;
   now.sweep = "base = 'a.toml'\n[[parameter]]\nkey = 'geometry.radius'\nvalues = [1, 3]\n";
-  EXPECT_THAT(differences(identity, now),
-              ElementsAre("the sweep file: parameter.0.values was [1, 2], is [1, 3]"));
+  EXPECT_THAT(differences(identity, now), ElementsAre("the sweep file: parameter.0.values was [1, 2], is [1, 3]"));
   now = identity;
   now.files = {{"rows.csv", "1123456789abcdef"}, {"part.igs", "0"}};
   EXPECT_THAT(differences(identity, now),
               ElementsAre("the file rows.csv has other contents", "the file part.igs is new"));
-  EXPECT_THAT(differences(now, identity),
-              ElementsAre("the file part.igs is no longer there or no longer named",
-                          "the file rows.csv has other contents"));
+  EXPECT_THAT(differences(now, identity), ElementsAre("the file part.igs is no longer there or no longer named",
+                                                      "the file rows.csv has other contents"));
 }
 
 TEST(Records, RefuseWhatIsNone) {
@@ -177,12 +175,20 @@ TEST(Records, RefuseWhatIsNone) {
   }
 }
 
+Quantity quantity(const std::string& name, const Entries& value) {
+  Quantity made;
+  made.name = name;
+  made.value = value;
+  return made;
+}
+
 TEST(Records, NameResultsByTheirPaths) {
   Report report;
-  report.properties = {{.name = "volume", .value = single(2.0), .error = {1e-9}, .evaluations = 7},
-                       {.name = "centroid", .value = {{1, 2, 3}, 3, 1}, .error = {0.5, 0.25, 0.125}},
-                       {.name = "area", .value = {}, .reason = "open"}};
-  report.integrals = {{.name = "moment", .value = single(std::numeric_limits<double>::infinity())}};
+  report.properties = {quantity("volume", single(2.0)), quantity("centroid", {{1, 2, 3}, 3, 1}), quantity("area", {})};
+  report.properties[0].error = {1e-9};
+  report.properties[0].evaluations = 7;
+  report.properties[1].error = {0.5, 0.25, 0.125};
+  report.integrals = {quantity("moment", single(std::numeric_limits<double>::infinity()))};
   report.geometry.elements = 8;
   const auto results = flat_results(report, {});
   const auto value = [&](const std::string& name) -> std::optional<double> {
@@ -203,8 +209,8 @@ TEST(Records, NameResultsByTheirPaths) {
 
 TEST(Records, HoldLongListsIfTheyAreChosen) {
   Report report;
-  report.properties = {{.name = "long", .value = {std::vector<double>(17, 1.5), 17, 1}},
-                       {.name = "short", .value = {std::vector<double>(16, 1.5), 16, 1}}};
+  report.properties = {quantity("long", {std::vector<double>(17, 1.5), 17, 1}),
+                       quantity("short", {std::vector<double>(16, 1.5), 16, 1})};
   const auto count = [&](const std::vector<std::string>& chosen, const std::string& stem) {
     int found = 0;
     for (const auto& [name, value] : flat_results(report, chosen)) found += name.starts_with(stem) && value == 1.5;

@@ -75,14 +75,14 @@ TEST_F(SweepPlans, TakeRowsOfFiles) {
                      "'rows.csv'\ncolumns = { major = 'geometry.major_radius', minor = 'geometry.minor_radius', name = "
                      "'title' }\n"),
               ElementsAre(ElementsAre("[0, 0, 0]", "3", "0.1", "thin"), ElementsAre("[0, 0, 0]", "2.5", "2", "thick"),
-                          ElementsAre("[1, 2, 3]", "3", "0.1", "thin"),
-                          ElementsAre("[1, 2, 3]", "2.5", "2", "thick")));
+                          ElementsAre("[1, 2, 3]", "3", "0.1", "thin"), ElementsAre("[1, 2, 3]", "2.5", "2", "thick")));
 }
 
 TEST_F(SweepPlans, DeriveValues) {
-  const SweepPlan derived = plan(
-      major + "values = [3, 4]\nname = 'R'\n[[derived]]\nname = 'third'\nexpression = 'R/3'\n[[derived]]\nkey = "
-              "'geometry.minor_radius'\nexpression = 'third + 0.5'\n");
+  const SweepPlan derived =
+      plan(major +
+           "values = [3, 4]\nname = 'R'\n[[derived]]\nname = 'third'\nexpression = 'R/3'\n[[derived]]\nkey = "
+           "'geometry.minor_radius'\nexpression = 'third + 0.5'\n");
   ASSERT_EQ(derived.columns.size(), 3);
   EXPECT_EQ(derived.columns[2].name, "minor_radius");
   const Value tree = case_tree(derived, 1);
@@ -127,7 +127,8 @@ TEST_F(SweepPlans, RefuseKeysThatCasesDoNotHave) {
   expect_refused("[[parameter]]\nkey = 'geometri.major_radius'\nvalues = [1]\n",
                  "geometri: unknown key (did you mean \"geometry\"?)");
   expect_refused("[[parameter]]\nkey = 'geometry.major_radius.x'\nvalues = [1]\n", "so \"x\" has no place in it");
-  expect_refused("[[parameter]]\nkey = 'integral.0.name'\nvalues = ['a']\n", "integral: found a table; expected a list");
+  expect_refused("[[parameter]]\nkey = 'integral.0.name'\nvalues = ['a']\n",
+                 "integral: found a table; expected a list");
 }
 
 TEST_F(SweepPlans, RefuseValuesThatKeysDoNotTake) {
@@ -185,13 +186,12 @@ TEST_F(SweepPlans, RefuseNames) {
   expect_refused(minor + "values = [1]\n" + minor + "values = [1]\nname = 'other'\n",
                  "the key \"geometry.minor_radius\" is set by \"minor_radius\" already");
   expect_refused(minor + "values = [1]\nname = 'a-b'\n", "expected letters, digits and _");
-  expect_refused(minor + "values = [1]\nname = 'sin'\n", "is a constant or function");
-  expect_refused(minor + "values = [1]\nname = 'pi'\n", "is a constant or function");
+  expect_refused(minor + "values = [1]\nname = 'sin'\n", "\"sin\" is a function of expressions");
+  expect_refused(minor + "values = [1]\nname = 'pi'\n", "\"pi\" is a constant of expressions");
   expect_refused(minor + "values = [1]\nname = 'status'\n", "is a column of every table");
 }
 
 TEST_F(SweepPlans, RefuseExpressions) {
-
   expect_refused(minor + "values = [0.5, 1]\nname = 'r'\n[[derived]]\nname = 'd'\nexpression = 's'\n",
                  "found the unknown name \"s\"");
   expect_refused(minor + "values = [0.5, 1]\nname = 'r'\n[[derived]]\nname = 'd'\nexpression = '1/(r-1)'\n",

@@ -24,7 +24,8 @@ struct Outcome {
   std::map<std::size_t, TaskEnd> ends;
 };
 
-Outcome run(std::size_t count, const std::function<std::string(std::size_t)>& work, const ProcessOptions& options = {}) {
+Outcome run(std::size_t count, const std::function<std::string(std::size_t)>& work,
+            const ProcessOptions& options = {}) {
   std::vector<std::size_t> tasks;
   for (std::size_t i = 0; i < count; ++i) tasks.push_back(i);
   Outcome outcome;
@@ -47,8 +48,8 @@ double seconds_of(const std::function<void()>& body) {
 }
 
 TEST(Processes, ReturnWhatTheWorkReturns) {
-  const Outcome outcome = run(
-      20, [](std::size_t i) { return std::string(i * 100000, 'x') + std::to_string(i); }, {.processes = 3});
+  const Outcome outcome =
+      run(20, [](std::size_t i) { return std::string(i * 100000, 'x') + std::to_string(i); }, {.processes = 3});
   EXPECT_TRUE(outcome.is_complete);
   ASSERT_EQ(outcome.ends.size(), 20);
   for (const auto& [i, end] : outcome.ends) {
@@ -95,13 +96,12 @@ TEST(Processes, LimitMemory) {
 TEST(Processes, EndTasksThatTakeTooLong) {
   Outcome outcome;
   const double seconds = seconds_of([&] {
-    outcome = run(
-        3,
-        [](std::size_t i) -> std::string {
-          if (i == 1) sleep_for_ever();
-          return "well";
-        },
-        {.processes = 2, .timeout = 0.5});
+    outcome = run(3,
+                  [](std::size_t i) -> std::string {
+                    if (i == 1) sleep_for_ever();
+                    return "well";
+                  },
+                  {.processes = 2, .timeout = 0.5});
   });
   EXPECT_LT(seconds, 30.0);
   EXPECT_TRUE(outcome.ends.at(1).is_timed_out);
@@ -114,13 +114,12 @@ TEST(Processes, StopAtOnceWhenAsked) {
   Outcome outcome;
   int asked = 0;
   const double seconds = seconds_of([&] {
-    outcome = run(
-        5,
-        [](std::size_t i) -> std::string {
-          if (i > 0) sleep_for_ever();
-          return "well";
-        },
-        {.processes = 2, .stop = [&] { return ++asked > 4; }});
+    outcome = run(5,
+                  [](std::size_t i) -> std::string {
+                    if (i > 0) sleep_for_ever();
+                    return "well";
+                  },
+                  {.processes = 2, .stop = [&] { return ++asked > 4; }});
   });
   EXPECT_LT(seconds, 30.0);
   EXPECT_FALSE(outcome.is_complete);
@@ -170,8 +169,7 @@ TEST(Processes, DieWithTheirParent) {
 
 TEST(Processes, CostMilliseconds) {
   const double seconds = seconds_of([] {
-    const Outcome outcome = run(
-        200, [](std::size_t) { return std::string("well"); }, {.processes = 2});
+    const Outcome outcome = run(200, [](std::size_t) { return std::string("well"); }, {.processes = 2});
     EXPECT_TRUE(outcome.is_complete);
   });
   // About 0.2 s on a machine at rest; starting the program anew for each would take 20.

@@ -45,8 +45,11 @@ TEST(LatinHypercube, HasOneSampleInEachStratumOfEachDimension) {
 /// By an implementation of the same in Python's integers.
 TEST(LatinHypercube, IsTheSameOnEveryMachine) {
   const auto points = latin_hypercube(4, 2, 1);
-  EXPECT_THAT(points, ::testing::ElementsAre(::testing::ElementsAreArray(std::vector<double>{0.611089804263943, 0.11106617520658951, 0.9407235979779403, 0.4693371716910433}),
-                                             ::testing::ElementsAreArray(std::vector<double>{0.8510355422625564, 0.6513550922438323, 0.1137344768675724, 0.38251974937539723})));
+  EXPECT_THAT(points, ::testing::ElementsAre(
+                          ::testing::ElementsAreArray(std::vector<double>{0.611089804263943, 0.11106617520658951,
+                                                                          0.9407235979779403, 0.4693371716910433}),
+                          ::testing::ElementsAreArray(std::vector<double>{0.8510355422625564, 0.6513550922438323,
+                                                                          0.1137344768675724, 0.38251974937539723})));
 }
 
 TEST(LatinHypercube, KeepsTheFirstDimensionsWhenMoreAreAdded) {
