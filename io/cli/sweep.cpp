@@ -94,6 +94,18 @@ fs::path shard_folder(const fs::path& folder, const io::Shard& shard) {
   return shard.is_everything() ? folder : folder / fmt::format("shard_{}_of_{}", shard.part, shard.count);
 }
 
+/// Removes the folders of cases, which are numbers; what else stands there is not ours.
+void discard_cases(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> discarded;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_number = std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; });
+    if (is_number && entry.is_directory()) discarded.push_back(entry.path());
+  }
+  for (const fs::path& path : discarded) fs::remove_all(path, error);
+}
+
 /// The journal to write to, and in `results` what it holds already.
 io::Journal open_journal(const fs::path& folder, const SweepArguments& arguments, io::SweepResults& results) {
   const fs::path path = io::journal_path(folder);
@@ -115,9 +127,9 @@ io::Journal open_journal(const fs::path& folder, const SweepArguments& arguments
     results.records = std::move(content.records);
     return journal;
   }
+  const bool is_discarded = io::has_journal(folder);
   io::Journal journal = io::Journal::make(path, io::identity_of(plan), results.shard);
-  std::error_code ignored;
-  fs::remove_all(folder / "cases", ignored);
+  if (is_discarded) discard_cases(folder / "cases");
   return journal;
 }
 

@@ -289,9 +289,6 @@ TEST_F(Program, UnknownCommandsAreStatus2WithTheNearest) {
   const ProgramResult unknown = run({"rum", "case.toml"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.err, HasSubstr("found the command \"rum\" (did you mean \"run\"?)"));
-  const ProgramResult later = run({"sweep", "a", "b"});
-  EXPECT_EQ(later.status, 2);
-  EXPECT_THAT(later.err, HasSubstr("the command \"sweep\" is not available in this version"));
   EXPECT_EQ(run({"run"}).status, 2);
   EXPECT_EQ(run({}).status, 2);
   EXPECT_EQ(run({"run", write("case.toml", circle), "-j", "0"}).status, 2);
@@ -303,8 +300,10 @@ TEST_F(Program, HelpAndVersion) {
   EXPECT_EQ(version.status, 0);
   EXPECT_THAT(version.out, ::testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+\n"));
   EXPECT_THAT(run({"help"}).out,
-              AllOf(HasSubstr("verify"), HasSubstr("Exit status"), HasSubstr("convert"), Not(HasSubstr("sweep"))));
+              AllOf(HasSubstr("verify"), HasSubstr("Exit status"), HasSubstr("convert"), HasSubstr("sweep")));
   EXPECT_THAT(run({"help", "run"}).out, HasSubstr("--set"));
+  EXPECT_THAT(run({"help", "sweep"}).out, AllOf(HasSubstr("--shard"), HasSubstr("latin_hypercube")));
+  EXPECT_THAT(run({"help", "sweep", "--markdown"}).out, AllOf(HasSubstr("## rows"), HasSubstr("| `csv` |")));
   EXPECT_THAT(run({"help", "case"}).out,
               AllOf(HasSubstr("properties"), HasSubstr("ellipsoid"), Not(HasSubstr("hull"))));
   EXPECT_THAT(run({"help", "case", "torus"}).out, AllOf(HasSubstr("major_radius"), HasSubstr("required")));

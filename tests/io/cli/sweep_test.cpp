@@ -278,6 +278,17 @@ TEST_F(SweepTest, RefusesToMixSweeps) {
   EXPECT_EQ(column("area").size(), 4);
 }
 
+TEST_F(SweepTest, DiscardsItsOwnCasesAlone) {
+  write("out/cases/mine.toml", "");
+  write("out/cases/9/mine.txt", "");
+  ASSERT_EQ(sweep(radii).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("out/cases/9/mine.txt")));
+  ASSERT_EQ(sweep("[[parameter]]\nkey = 'geometry.radius'\nvalues = [1, 2]\n", {"--restart"}).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("out/cases/mine.toml")));
+  EXPECT_FALSE(std::filesystem::exists(path("out/cases/3")));
+  EXPECT_EQ(column("volume").size(), 2);
+}
+
 TEST_F(SweepTest, WritesNothingForBadInput) {
   const ProgramResult result = sweep("[[parameter]]\nkey = 'geometry.radios'\nvalues = [1]\n");
   EXPECT_EQ(result.status, 2);
