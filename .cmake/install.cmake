@@ -8,7 +8,7 @@ foreach(room IN LISTS isorim_rooms)
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
   install(EXPORT isorim-${room} NAMESPACE isorim:: DESTINATION ${isorim_package_dir} COMPONENT development)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/isorim COMPONENT development
-          FILES_MATCHING PATTERN "*.h" PATTERN cli EXCLUDE PATTERN picture EXCLUDE)
+          FILES_MATCHING PATTERN "*.h" PATTERN cli EXCLUDE PATTERN picture EXCLUDE PATTERN python EXCLUDE)
 endforeach()
 install(TARGETS isorim RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 

@@ -1,0 +1,106 @@
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Path = str | os.PathLike[str]
+Floats = NDArray[np.float64]
+Integrand = str | Callable[[Floats], ArrayLike] | Callable[[Floats, Floats], ArrayLike]
+
+__version__: str
+__all__: list[str]
+
+class InputError(ValueError): ...
+class GeometryError(InputError): ...
+class NumericalError(ArithmeticError): ...
+
+@dataclass(frozen=True)
+class Quantity:
+    value: Any
+    error: Any = ...
+    status: str | None = ...
+    reason: str = ...
+
+@dataclass(frozen=True)
+class Integral:
+    value: float
+    error: float
+    evaluations: int
+    status: str
+
+@dataclass(frozen=True)
+class Evaluation:
+    location: NDArray[np.int8]
+    value: Floats
+    gradient: Floats
+
+@dataclass(frozen=True)
+class Fit:
+    curve: dict[str, Any]
+    parameters: Floats
+    distances: Floats
+    tolerance_met: bool
+
+class Boundary:
+    @property
+    def title(self) -> str: ...
+    @property
+    def dimension(self) -> int: ...
+    @property
+    def patches(self) -> list[str]: ...
+    def inspect(self, *, threads: int = ...) -> dict[str, Any]: ...
+    def properties(
+        self,
+        *,
+        density: float | None = ...,
+        tolerance: float = ...,
+        pole: ArrayLike | None = ...,
+        threads: int = ...,
+    ) -> dict[str, Quantity]: ...
+    def integrate(
+        self,
+        integrand: Integrand,
+        *,
+        over: Literal["domain", "boundary"] = ...,
+        tolerance: float = ...,
+        pole: ArrayLike | None = ...,
+        threads: int = ...,
+    ) -> Integral: ...
+    def sections(
+        self,
+        normal: ArrayLike,
+        offsets: ArrayLike = ...,
+        *,
+        point: ArrayLike = ...,
+        fit_tolerance: float = ...,
+        threads: int = ...,
+    ) -> list[dict[str, Any]]: ...
+    def run(self, *, threads: int = ...) -> dict[str, Any]: ...
+    def evaluate(self, points: ArrayLike, *, threads: int = ...) -> Evaluation: ...
+    def write(self, path: Path, *, unit: str = ...) -> None: ...
+    def write_solution(self, path: Path) -> None: ...
+
+def load(
+    source: Path | Mapping[str, Any], *, overrides: Sequence[str] = ..., folder: Path = ..., threads: int = ...
+) -> Boundary: ...
+def run(
+    source: Path | Mapping[str, Any], *, overrides: Sequence[str] = ..., folder: Path = ..., threads: int = ...
+) -> dict[str, Any]: ...
+def nurbs_curve(
+    degree: int, knots: ArrayLike, points: ArrayLike, weights: ArrayLike | None = ..., **keys: Any
+) -> dict[str, Any]: ...
+def nurbs_surface(
+    degree: Sequence[int], knots: Sequence[ArrayLike], points: ArrayLike, weights: ArrayLike | None = ..., **keys: Any
+) -> dict[str, Any]: ...
+def fit(
+    points: ArrayLike,
+    *,
+    closed: bool = ...,
+    degree: int = ...,
+    control_points: int = ...,
+    tolerance: float = ...,
+    corner_angle: float = ...,
+) -> Fit: ...
