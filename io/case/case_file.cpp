@@ -43,6 +43,8 @@ std::vector<std::string> quantity_names(const CaseKeys& keys, int dim) {
   for (AnalysisQuantity& quantity : analysis_quantities(keys, dim)) names.push_back(std::move(quantity.name));
   for (const PlaneSectionKeys& section : keys.section)
     for (const std::string& quantity : section_quantity_names()) names.push_back(section.name + "." + quantity);
+  if (keys.hydrostatics)
+    for (std::string& name : hydrostatics_quantity_names(*keys.hydrostatics)) names.push_back(std::move(name));
   return names;
 }
 
@@ -82,6 +84,8 @@ std::pair<int, int> expected_shape(const CaseKeys& keys, const std::string& name
   for (const PlaneSectionKeys& section : keys.section)
     for (const std::string& quantity : section_quantity_names())
       if (section.name + "." + quantity == name) return {static_cast<int>(section_offsets(section).size()), 1};
+  // Of tables as many as there are rows.
+  if (keys.hydrostatics && name.find('.') != std::string::npos) return {-1, 1};
   return value_shape(name, dim);
 }
 
@@ -266,6 +270,8 @@ CaseFile read_case(const Value& root, const std::filesystem::path& path, const F
       check_integrands(file, *dim, complaints);
       check_analysis(file, *dim, patch_names(file.shape), complaints);
       check_sections(file.keys, *dim, complaints);
+      if (file.keys.hydrostatics && *dim == 2)
+        complaints.add(file.keys.hydrostatics->where, "hydrostatics are for solids; the shape is plane");
       check_expectations(file.keys, *dim, complaints);
       check_convergence(file.keys, *dim, complaints);
       check_poles(file.keys, *dim, complaints);

@@ -10,6 +10,7 @@
 #include "io/case/analysis_keys.h"
 #include "io/case/file_shape.h"
 #include "io/case/drawing_keys.h"
+#include "io/case/hydrostatics_keys.h"
 #include "io/case/plane_section_keys.h"
 #include "io/case/schema.h"
 #include "io/case/shape_builder.h"
@@ -90,6 +91,7 @@ struct CaseKeys {
   std::vector<PlaneSectionKeys> section;
   std::optional<DrawingKeys> drawings;
   std::optional<MouldKeys> moulds;
+  std::optional<HydrostaticsKeys> hydrostatics;
   ExpectKeys expect;
   OutputKeys output;
   std::optional<ConvergenceKeys> convergence;

@@ -220,6 +220,7 @@ const Schema<CaseKeys>& schema<CaseKeys>() {
           .key("section", &CaseKeys::section, {.text = "Plane sections of a solid: [[section]], any number."})
           .key("drawings", &CaseKeys::drawings, {.text = "Workshop drawings."})
           .key("moulds", &CaseKeys::moulds, {.text = "Templates of the boards of a mould."})
+          .key("hydrostatics", &CaseKeys::hydrostatics, {.text = "A solid afloat."})
           .key("expect", &CaseKeys::expect, {.text = "Expected values."})
           .key("output", &CaseKeys::output, {.text = "What is written."})
           .key("convergence", &CaseKeys::convergence, {.text = "A study of fixed Gauss rules."})
@@ -233,8 +234,7 @@ const Schema<CaseKeys>& schema<CaseKeys>() {
           .key("solve", &CaseKeys::solve, {.text = "Analysis: how the equations are solved."})
           .key("probe", &CaseKeys::probe, {.text = "Analysis: points where the solution is wanted, [[probe]]."})
           .key("grid", &CaseKeys::grid, {.text = "Analysis: grids of such points, [[grid]]."})
-          .key("exact", &CaseKeys::exact, {.text = "Analysis: the exact solution, to measure errors."})
-          .later({"hydrostatics"});
+          .key("exact", &CaseKeys::exact, {.text = "Analysis: the exact solution, to measure errors."});
   return declared;
 }
 

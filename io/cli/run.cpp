@@ -11,6 +11,7 @@
 #include "io/cli/commands.h"
 #include "io/cli/interrupts.h"
 #include "io/fit/fit_pictures.h"
+#include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/compute.h"
 #include "io/results/convergence.h"
 #include "io/results/drawings.h"
@@ -51,6 +52,7 @@ void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io
   if (report.sections) io::write_sections(folder, *report.sections, output);
   for (std::string& message : io::write_drawings(folder, file, model, report.threads))
     report.warnings.push_back(std::move(message));
+  if (report.hydrostatics) io::write_hydrostatics(folder, *report.hydrostatics, output);
   if (file.fit) io::write_fit_points(folder / "fit_points.csv", *file.fit);
   if (file.fit && output.svg) io::write_fit_svg(folder / "fit.svg", report.title, *file.fit);
   if (file.keys.convergence) {

@@ -15,6 +15,7 @@
 #include "io/case/curve_builder.h"
 #include "io/case/shape_builder.h"
 #include "io/expression.h"
+#include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/plane_sections.h"
 #include "io/results/propeller_report.h"
 #include "quadrature/parallel.h"
@@ -320,6 +321,31 @@ void add_sections(const CaseFile& file, const Model<Dim>& model, const RunOption
   }
 }
 
+// --- Hydrostatics ---------------------------------------------------------------------------------------------
+
+template <int Dim>
+void add_hydrostatics(const CaseFile& file, const Model<Dim>& model, const RunOptions& run, Report& report) {
+  if constexpr (Dim == 3) {
+    if (!file.keys.hydrostatics) return;
+    const HydrostaticsKeys& keys = *file.keys.hydrostatics;
+    if (is_refused(file, model.oriented.topology.closed))
+      throw InputError(
+          fmt::format("{}: hydrostatics need a closed boundary; found {}; expected a closed one, or "
+                      "open_boundary = \"integrate\" in [properties]",
+                      keys.where.place.describe(), describe_free_edges(model.oriented)));
+    std::function<void(double)> progress;
+    if (run.progress) progress = [report = run.progress](double fraction) { report("hydrostatics", fraction); };
+    const solver::FloatingBodyOptions options{file.keys.properties.tolerance, run.threads};
+    HydrostaticsReport result = located(keys.where, [&] {
+      return compute_hydrostatics(keys, model.oriented.boundary, model.oriented.topology.largest_gap, options,
+                                  progress);
+    });
+    if (file.cad) result.unit = file.cad->unit;
+    report.warnings.insert(report.warnings.end(), result.warnings.begin(), result.warnings.end());
+    report.hydrostatics = std::make_shared<const HydrostaticsReport>(std::move(result));
+  }
+}
+
 // --- Fits -----------------------------------------------------------------------------------------------------
 
 void add_fit(const CaseFile& file, Report& report) {
@@ -358,8 +384,12 @@ void compare_expectations(const CaseFile& file, Report& report) {
       report.analysis ? expected_quantities(*report.analysis) : std::vector<Quantity>();
   const std::vector<Quantity> of_sections =
       report.sections ? section_quantities(*report.sections) : std::vector<Quantity>();
+  const std::vector<Quantity> of_hydrostatics =
+      report.hydrostatics ? expected_quantities(*report.hydrostatics) : std::vector<Quantity>();
   const auto find = [&](const std::string& name) -> const Quantity* {
     if (name == closure.name) return &closure;
+    const auto afloat = std::ranges::find(of_hydrostatics, name, &Quantity::name);
+    if (afloat != of_hydrostatics.end()) return &*afloat;
     const auto section = std::ranges::find(of_sections, name, &Quantity::name);
     if (section != of_sections.end()) return &*section;
     const auto found = std::ranges::find(of_analysis, name, &Quantity::name);
@@ -379,6 +409,7 @@ RunStatus overall_status(const Report& report) {
   };
   if (std::any_of(report.properties.begin(), report.properties.end(), unreached) ||
       std::any_of(report.integrals.begin(), report.integrals.end(), unreached) ||
+      (report.hydrostatics && std::ranges::any_of(report.hydrostatics->quantities, unreached)) ||
       (report.analysis && report.analysis->adaptive && !report.analysis->adaptive->is_reached())) {
     return RunStatus::tolerance_not_reached;
   }
@@ -405,6 +436,7 @@ Report report_of(const CaseFile& file, const Model<Dim>& model, const RunOptions
     if (!is_result_integral(file, keys, Dim)) report.integrals.push_back(integrate(file, keys, model, run));
   }
   add_sections(file, model, run, report);
+  add_hydrostatics(file, model, run, report);
   report.timings.integrate = seconds_since(start);
   add_analysis(file, model, run, report);
   check_finite(report.properties, file.path.string());

@@ -12,6 +12,7 @@
 #include "geometry/errors.h"
 #include "io/analysis/analysis.h"
 #include "io/atomic_file.h"
+#include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/hdf5_parts.h"
 
 namespace isorim::io {
@@ -301,6 +302,7 @@ void write_report(hid_t file, const Report& report, const AnyModel& model) {
   write_quantities(file, "integrals", report.integrals);
   if (report.fit) write_quantities(file, "fit", report.fit_quantities);
   if (report.propeller) write_quantities(file, "propeller", report.propeller_quantities);
+  if (report.hydrostatics) write_quantities(file, "hydrostatics", expected_quantities(*report.hydrostatics));
   if (report.analysis) write_analysis(file, *report.analysis, *report.fields);
   write_expectations(file, report.expectations);
   const Handle timings = open_group(file, "timings");

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "io/atomic_file.h"
+#include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/analysis_json.h"
 #include "io/results/fit_json.h"
 #include "io/results/json_parts.h"
@@ -90,6 +91,7 @@ std::string to_json(const Report& report) {
   json["integrals"] = quantities_json(report.integrals);
   if (report.analysis) json["analysis"] = analysis_json(*report.analysis);
   if (report.sections) json["sections"] = sections_json(*report.sections);
+  if (report.hydrostatics) json["hydrostatics"] = hydrostatics_json(*report.hydrostatics);
   json["expectations"] = expectations_json(report.expectations);
   json["timings"] = {{"read", number(report.timings.read)},
                      {"integrate", number(report.timings.integrate)},

@@ -19,6 +19,7 @@ namespace isorim::io {
 struct AnyAnalysis;
 struct PropellerFacts;
 struct SectionFamily;
+struct HydrostaticsReport;
 
 /// A number, a vector (columns = 1) or a matrix, entry by entry along the rows.
 struct Entries {
@@ -129,6 +130,8 @@ struct Report {
   std::shared_ptr<const AnyAnalysis> fields;
   /// Plane sections; null if none are asked for.
   std::shared_ptr<const std::vector<SectionFamily>> sections;
+  /// Null if it is not asked for.
+  std::shared_ptr<const HydrostaticsReport> hydrostatics;
   std::vector<ExpectationResult> expectations;
   Timings timings;
   int threads = 1;

@@ -57,7 +57,7 @@ struct FloatingState {
   /// GM about the longitudinal axis.
   double transverse_metacentric_height() const { return metacentric_heights(1, 1); }
   /// Positive if it turns the body back from a heel to starboard.
-  double righting_arm() const { return -arms.y(); }
+  double righting_arm() const { return 0.0 - arms.y(); }
 };
 
 /// The draught at which the body displaces the loading's volume with `up` given: Newton's method with dV/doffset = A_w,

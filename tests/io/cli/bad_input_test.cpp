@@ -60,8 +60,41 @@ const std::vector<BadCase> keys{
     {"LaterType",
      "[geometry]\ntype = 'hull'\noffsets = 'a.csv'\n",
      {"the type \"hull\" is not available in this version"}},
-    {"LaterSection", circle + "[hydrostatics]\ndraught = 1\n", {"hydrostatics: not available in this version"}},
     {"LaterKey", circle + "clip = { normal = [1, 0] }\n", {"geometry.clip: not available in this version"}},
+};
+
+/// A box, and the section that follows.
+std::string afloat(const std::string& text) {
+  return "[geometry]\ntype = 'box'\nsize = [4, 2, 1]\n[hydrostatics]\n" + text;
+}
+
+const std::vector<BadCase> hydrostatics{
+    {"InThePlane", circle + "[hydrostatics]\ndraught = 1\n", {"hydrostatics are for solids; the shape is plane"}},
+    {"NeitherDraughtNorLoading", afloat("trim = 1\n"), {"expected a \"draught\" or a \"loading\""}},
+    {"DraughtsThatFall",
+     afloat("draught = 1\ncurves_of_form = { draughts = [0.5, 0.2] }\n"),
+     {"hydrostatics.curves_of_form.draughts: found 0.2 after 0.5; expected rising numbers"}},
+    {"RangeWithoutStep",
+     afloat("draught = 1\ncurves_of_form = { draughts = { from = 0, to = 1 } }\n"),
+     {"draughts: expected either \"step\" or \"count\""}},
+    {"RangeThatFalls",
+     afloat("draught = 1\ncurves_of_form = { draughts = { from = 1, to = 0, step = 0.1 } }\n"),
+     {"found from = 1 and to = 0; expected a range that rises"}},
+    {"ArmsWithoutLoading",
+     afloat("draught = 1\nrighting_arms = { heels = [0, 10] }\n"),
+     {"hydrostatics.righting_arms: righting arms need a \"loading\""}},
+    {"MassOfZero",
+     afloat("loading = { mass = 0, centre_of_gravity = [0, 0, 0] }\n"),
+     {"hydrostatics.loading.mass: found 0; expected"}},
+    {"CentreInThePlane",
+     afloat("loading = { mass = 1, centre_of_gravity = [0, 0] }\n"),
+     {"found 2 coordinates; expected 3"}},
+    {"UnknownTrim",
+     afloat("loading = { mass = 1, centre_of_gravity = [0, 0, 0] }\nrighting_arms = { heels = [0], trim = 'fre' }\n"),
+     {"(did you mean \"free\"?)"}},
+    {"UnknownQuantity",
+     afloat("draught = 1\n[expect]\n'hydrostatics.volum' = { value = 1, rtol = 1 }\n"),
+     {"did you mean \"hydrostatics.volume\"?"}},
 };
 
 const std::vector<BadCase> types{
@@ -430,6 +463,7 @@ const std::vector<BadCase> propellers{
 
 INSTANTIATE_TEST_SUITE_P(Propellers, BadInput, ::testing::ValuesIn(propellers), bad_case_name);
 INSTANTIATE_TEST_SUITE_P(Syntax, BadInput, ::testing::ValuesIn(syntax), bad_case_name);
+INSTANTIATE_TEST_SUITE_P(Hydrostatics, BadInput, ::testing::ValuesIn(hydrostatics), bad_case_name);
 INSTANTIATE_TEST_SUITE_P(Keys, BadInput, ::testing::ValuesIn(keys), bad_case_name);
 INSTANTIATE_TEST_SUITE_P(Types, BadInput, ::testing::ValuesIn(types), bad_case_name);
 INSTANTIATE_TEST_SUITE_P(Ranges, BadInput, ::testing::ValuesIn(ranges), bad_case_name);
