@@ -151,6 +151,7 @@ BladeSkin skin_blade(std::span<const BladeSection> sections, const BladeSurfaceO
     outlines.push_back(
         interpolate_outline(sections[k], takes_own ? chord_parameters(sections[k], k) : common, options));
   }
+  apply_edits(options.edits, outlines);
   BladeKnots knots;
   if (has_own) {
     UniformSections uniform = uniformise(outlines, options.uniformisation);

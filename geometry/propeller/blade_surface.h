@@ -6,6 +6,7 @@
 #include "geometry/boundary.h"
 #include "geometry/fitting/section_uniformisation.h"
 #include "geometry/nurbs/surface.h"
+#include "geometry/propeller/blade_edit.h"
 #include "geometry/propeller/blade_section.h"
 
 namespace isorim::geometry {
@@ -26,6 +27,8 @@ struct BladeSurfaceOptions {
   UniformisationOptions uniformisation = {};
   int degree = 3;
   Hand hand = Hand::right;
+  /// Of the sections' curves, before their knots are made the same.
+  std::vector<BladeEdit> edits = {};
 };
 
 /// The parameters v of the sections on the surface, from 0 to 1: mean chord lengths between the outlines in space.

@@ -90,6 +90,32 @@ struct HubParts {
   Boundary<3> whole;
 };
 
+/// About the shaft.
+NurbsSurface<3> turned(const NurbsCurve<2>& profile) {
+  const HomogeneousPoints<2>& plane = profile.homogeneous();
+  HomogeneousPoints<3> net = HomogeneousPoints<3>::Zero(4, plane.cols());
+  net.row(0) = plane.row(0);
+  net.row(2) = plane.row(1);
+  net.row(3) = plane.row(2);
+  return revolve(NurbsCurve<3>(profile.knots(), net), {Point3::Zero(), Vector3::UnitX()}, 2.0 * std::numbers::pi);
+}
+
+/// What closes the hub beyond an edge of its cylinder.
+std::vector<Patch<3>> hub_end(const std::string& name, const NurbsCurve<3>& edge,
+                              const std::vector<NurbsCurve<2>>& profile) {
+  const auto disc = [](const NurbsCurve<3>& rim, double x) { return fan<3>(rim, Point3(x, 0.0, 0.0)); };
+  if (profile.empty()) return {{name, disc(edge, evaluate(edge, edge.domain().first).x())}};
+  std::vector<Patch<3>> patches;
+  const auto next_name = [&] { return fmt::format("{}_{}", name, patches.size() + 1); };
+  for (const NurbsCurve<2>& curve : profile) patches.push_back({next_name(), turned(curve)});
+  const Point2 last = evaluate(profile.back(), profile.back().domain().last);
+  if (last.y() > 1e-12 * std::abs(last.x())) {
+    const NurbsCurve<3> rim = boundary_curves(surface_of(patches.back().shape))[2];
+    patches.push_back({next_name(), disc(rim, last.x())});
+  }
+  return patches;
+}
+
 /// The hub's side and ends, given the part of the side that the blades cover.
 HubParts hub_parts(const TrimmedSurface& covered, const Hub& hub) {
   const Interval blades = covered.surface().knots_v().domain();
@@ -104,9 +130,13 @@ HubParts hub_parts(const TrimmedSurface& covered, const Hub& hub) {
   const double size = 2.0 * hub.radius + ends.length();
   std::vector<TrimLoop> loops = loops_beside(covered, side, size);
   const std::array<NurbsCurve<3>, 4> edges = boundary_curves(side);
-  const Patch<3> aft{"hub_aft", fan<3>(edges[0], Point3(ends.first, 0.0, 0.0))};
-  const Patch<3> forward{"hub_forward", fan<3>(edges[2], Point3(ends.last, 0.0, 0.0))};
-  return {{{"hub", TrimmedSurface(side, std::move(loops))}, aft, forward}, {{{"hub", side}, aft, forward}}};
+  HubParts parts{{{"hub", TrimmedSurface(side, std::move(loops))}}, {{{"hub", side}}}};
+  for (const std::vector<Patch<3>>& end :
+       {hub_end("hub_aft", edges[0], hub.beyond_aft), hub_end("hub_forward", edges[2], hub.beyond_forward)}) {
+    parts.beside_blades.insert(parts.beside_blades.end(), end.begin(), end.end());
+    parts.whole.patches.insert(parts.whole.patches.end(), end.begin(), end.end());
+  }
+  return parts;
 }
 
 /// The blades outside the hub, and the hub outside the blades; the hub alone.

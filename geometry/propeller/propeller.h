@@ -8,13 +8,22 @@
 
 namespace isorim::geometry {
 
-/// A round hub about the shaft (the X axis) with plane ends.
+/// A round hub about the shaft (the X axis): the cylinder that the blades stand on, and what lies beyond it.
 struct Hub {
   double radius = 0.0;
   /// X of the after and the forward end; absent: a quarter of the radius beyond the blades.
   std::optional<double> aft = std::nullopt;
   std::optional<double> forward = std::nullopt;
+  /// Profiles in (X, distance from the shaft), curve after curve, from the cylinder's end to the shaft or to a plane
+  /// end of the hub; empty: the cylinder has a plane end. With them `aft` and `forward` must be there.
+  std::vector<NurbsCurve<2>> beyond_aft = {};
+  std::vector<NurbsCurve<2>> beyond_forward = {};
 };
+
+/// The hub of a profile in (X, distance from the shaft), curves one after the other from end to end; straight ones may
+/// have corners. The longest piece parallel to the shaft is the cylinder that the blades stand on. Throws GeometryError
+/// if there is none, and for gaps and points beyond the shaft.
+Hub hub_by_profile(const std::vector<NurbsCurve<2>>& profile);
 
 /// A screw: equal blades, a turn over their number apart, the first along Z.
 struct Propeller {
@@ -36,7 +45,7 @@ struct PropellerModel {
 
 /// The screw as one closed boundary, oriented outward. The patches of blade k are "blade_k", and "blade_k_tip",
 /// "blade_k_trailing_edge", without a hub also "blade_k_root", where blade_solid() has such; those of the hub "hub",
-/// "hub_aft", "hub_forward".
+/// "hub_aft" and "hub_forward", or of its profile "hub_aft_1", .. from the cylinder on.
 ///
 /// Blades end on the hub along curves that are traced to rounding: blade and hub are trimmed along the same curve.
 /// Where the first section does not reach into the hub the blade's surface continues inward as the polynomial that it

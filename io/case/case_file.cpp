@@ -214,7 +214,8 @@ std::optional<int> build_shape(CaseFile& file, const FileShapeOptions& options, 
       file.fit = std::move(fitted.facts);
       return dim;
     }
-    if (const auto* keys = std::get_if<PropellerKeys>(&file.keys.geometry)) {
+    if (auto* keys = std::get_if<PropellerKeys>(&file.keys.geometry)) {
+      keys->folder = file.path.parent_path();
       PropellerShape built = build_propeller_shape(*keys);
       file.shape = std::move(built.boundary);
       file.propeller = std::make_shared<const PropellerFacts>(std::move(built.facts));

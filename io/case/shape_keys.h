@@ -14,6 +14,7 @@
 #include "io/case/fit_keys.h"
 #include "io/case/schema.h"
 #include "io/case/shape_base_keys.h"
+#include "io/propeller/blade_table.h"
 
 /// What a case file says of shapes, as it stands there: angles in degrees, lengths in the unit of the shape. The
 /// declarations (types, ranges, texts) are in shape_declarations.cpp, the construction in shape_builder.h.
@@ -240,12 +241,38 @@ struct TSplineKeys : SolidKeys {
 /// How the sections of a blade come to the same knots.
 enum class BladeUniformisation { averaged, merge, insert_and_remove };
 
-/// A screw of a systematic series.
+/// What a blade's sections come from; `own`: the case's own table or points.
+enum class BladeSource { own, kaplan, b_troost };
+
+/// The points of a section.
+struct BladeSectionKeys {
+  double radius_ratio = 0.0;
+  std::string file;
+  KeyPlace where;
+};
+
+/// Exactly one of move_x, move_y and smooth.
+struct BladeEditKeys {
+  double radius_ratio = 0.0;
+  int point = 0;
+  std::optional<double> move_x;
+  std::optional<double> move_y;
+  bool smooth = false;
+  KeyPlace where;
+};
+
+/// A screw: of a systematic series, by a table, or by the points of its sections.
 struct PropellerKeys : SolidKeys {
-  geometry::BladeSeries series = geometry::BladeSeries::kaplan;
+  BladeSource series = BladeSource::own;
+  std::optional<BladeTableKeys> table;
+  std::string table_file;
+  std::vector<BladeSectionKeys> sections;
+  geometry::ThicknessForm thickness_form = geometry::ThicknessForm::naca_66_mod;
+  geometry::MeanLine mean_line = geometry::MeanLine::naca_a08;
+  int points_a_side = 25;
   double diameter = 0.0;
   int blades = 0;
-  double area_ratio = 0.0;
+  std::optional<double> area_ratio;
   /// One number, or rows of r / R and the value.
   NumberArray pitch_ratio;
   /// Degrees, or rows of r / R and a length.
@@ -256,11 +283,16 @@ struct PropellerKeys : SolidKeys {
   /// 0: no hub.
   double hub_ratio = 0.2;
   std::optional<Eigen::Vector2d> hub_ends;
+  /// In (X, distance from the shaft); takes the place of hub_ratio and hub_ends.
+  std::vector<CurveKeys> hub_profile;
   geometry::Hand hand = geometry::Hand::right;
   BladeUniformisation uniformisation = BladeUniformisation::averaged;
   int inserted_knots = 25;
   /// Absent: 1e-4 of the diameter.
   std::optional<double> removal_tolerance;
+  std::vector<BladeEditKeys> edits;
+  /// Where relative paths begin, the folder of the case file; set by its reader.
+  std::filesystem::path folder;
 };
 
 using SurfaceKeys =

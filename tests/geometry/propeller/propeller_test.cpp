@@ -1,11 +1,13 @@
 #include "geometry/propeller/propeller.h"
 
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "geometry/errors.h"
 #include "geometry/propeller/series.h"
 #include "tests/geometry/refusals.h"
 
@@ -98,6 +100,97 @@ TEST(Propeller, TakesHubsOfOtherSizesAndBothHands) {
     EXPECT_LE((net.row(0).array() - 95.0).abs().maxCoeff(), 1e-11);
     EXPECT_NEAR(std::hypot(net(1, 1), net(2, 1)), radius, 1e-11);
   }
+}
+
+/// A cylinder of radius 50 from X = -60 to 70, a cap that ends on the shaft aft and a step and a plane end forward.
+std::vector<NurbsCurve<2>> boss() {
+  Points<2> cap(2, 3);
+  cap << -110.0, -110.0, -60.0, 0.0, 50.0, 50.0;
+  Points<2> rest(2, 4);
+  rest << -60.0, 70.0, 80.0, 80.0, 50.0, 50.0, 40.0, 40.0;
+  rest.col(3) << 95.0, 40.0;
+  return {NurbsCurve<2>::from_points(KnotVector::bezier(2), cap, std::vector<double>{1.0, std::sqrt(0.5), 1.0}),
+          NurbsCurve<2>::from_points(KnotVector(1, {0, 0, 1, 2, 3, 3}), rest)};
+}
+
+TEST(HubByProfile, FindsTheCylinderThatTheBladesStandOn) {
+  for (const bool is_reversed : {false, true}) {
+    std::vector<NurbsCurve<2>> profile = boss();
+    if (is_reversed) profile = {reverse(profile[1]), reverse(profile[0])};
+    const Hub hub = hub_by_profile(profile);
+    EXPECT_EQ(hub.radius, 50.0);
+    EXPECT_EQ(*hub.aft, -60.0);
+    EXPECT_EQ(*hub.forward, 70.0);
+    EXPECT_EQ(hub.beyond_aft.size(), 1u);
+    EXPECT_EQ(hub.beyond_forward.size(), 2u);
+    // From the cylinder outwards.
+    EXPECT_NEAR(evaluate(hub.beyond_aft[0], hub.beyond_aft[0].domain().first).x(), -60.0, 1e-12);
+    EXPECT_NEAR(evaluate(hub.beyond_aft[0], hub.beyond_aft[0].domain().last).y(), 0.0, 1e-12);
+  }
+}
+
+TEST(Propeller, JoinsBladesToAHubByItsProfile) {
+  for (const BladeSeries series : {BladeSeries::kaplan, BladeSeries::wageningen_b}) {
+    Propeller screw = reference(series);
+    screw.hub = hub_by_profile(boss());
+    const PropellerModel model = propeller_model(screw);
+    const std::vector<std::string> names = names_of(*model.hub);
+    EXPECT_EQ(names, (std::vector<std::string>{"hub", "hub_aft_1", "hub_forward_1", "hub_forward_2", "hub_forward_3"}));
+    EXPECT_EQ(model.boundary.patches.size(), (series == BladeSeries::kaplan ? 8u : 4u) + 5u);
+  }
+}
+
+TEST(HubByProfile, RefusesProfilesOfNoHub) {
+  const auto refused = [](auto change) {
+    std::vector<NurbsCurve<2>> profile = boss();
+    change(profile);
+    return refusal([&] { hub_by_profile(profile); });
+  };
+  EXPECT_THAT(refused([](auto& p) { p.clear(); }), HasSubstr("no curves"));
+  EXPECT_THAT(refused([](auto& p) { p.pop_back(); }), HasSubstr("no piece of the profile is parallel"));
+  EXPECT_THAT(refused([](auto& p) { p[1] = reverse(p[1]); }), HasSubstr("a gap of 155"));
+  AffineMap<2> mirrored;
+  mirrored.linear(1, 1) = -1.0;
+  EXPECT_THAT(refused([&](auto& p) { p[1] = transform(p[1], mirrored); }), HasSubstr("reaches the radius -50"));
+}
+
+/// Of all numbers of blades, both hands, both series, on hubs of many sizes.
+Propeller random_screw(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto between = [&](double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(random);
+  };
+  SeriesBlade blade;
+  blade.series = seed % 2 == 0 ? BladeSeries::wageningen_b : BladeSeries::kaplan;
+  blade.diameter = 500.0;
+  blade.blades = 3 + static_cast<int>(seed / 2 % 5);
+  blade.area_ratio = between(0.3, 1.05);
+  const double pitch = between(0.5, 1.5);
+  blade.pitch_ratio =
+      RadialLaw("pitch", {0.2, 0.6, 1.0}, {pitch * between(0.8, 1.1), pitch, pitch * between(0.8, 1.1)});
+  blade.rake = RadialLaw("rake", {0.0, 1.0}, {0.0, between(-60.0, 100.0)});
+  blade.skew = RadialLaw("skew", {0.2, 0.6, 1.0}, {0.0, between(-0.1, 0.2), between(-0.2, 0.8)});
+  Propeller screw;
+  screw.sections = series_sections(blade);
+  screw.blades = blade.blades;
+  screw.surface.hand = seed % 3 == 0 ? Hand::left : Hand::right;
+  if (seed % 4 == 3) screw.surface.fit = BladeFit::own_parameters;
+  screw.hub = Hub{250.0 * between(0.17, 0.32)};
+  return screw;
+}
+
+// Closed, as propeller() requires. Where wide blades overlap at the hub there is no such boundary: that is said.
+TEST(Propeller, ClosesOrSaysWhyNot) {
+  int closed = 0;
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    const std::string why = refusal([&] {
+      propeller(random_screw(seed));
+      throw GeometryError("closed");
+    });
+    if (why == "closed") ++closed;
+    EXPECT_THAT(why, ::testing::AnyOf("closed", HasSubstr("cross"), HasSubstr("propeller"))) << seed;
+  }
+  EXPECT_GE(closed, 20);
 }
 
 TEST(Propeller, RefusesHubsThatDoNotFit) {

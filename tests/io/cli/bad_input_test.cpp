@@ -443,7 +443,7 @@ const std::vector<BadCase> propellers{
      "[geometry]\ntype = 'propeller'\nseries = 'kaplann'\n",
      {"geometry.series: found the text \"kaplann\"", "(did you mean \"kaplan\"?)"}},
     {"NoPitch", propeller("blades = 4"), {"the key \"pitch_ratio\"", "is missing"}},
-    {"TooManyBlades", propeller("blades = 9\npitch_ratio = 1"), {"case.toml:6: geometry.blades: found 9"}},
+    {"TooManyBlades", propeller("blades = 9\npitch_ratio = 1"), {"geometry.blades: found 9", "from 3 to 7"}},
     {"PitchAsAList",
      propeller("blades = 4\npitch_ratio = [0.8, 0.9]"),
      {"case.toml:7: geometry.pitch_ratio: found a list; expected one number, or a list of rows [r/R, value]"}},

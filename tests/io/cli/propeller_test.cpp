@@ -1,6 +1,9 @@
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -89,6 +92,103 @@ TEST_F(PropellerCase, RefusesKeysThatDoNotGoTogether) {
   const ProgramResult result = run_case(kaplan + "removal_tolerance = 0.1\n");
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, HasSubstr("expected uniformisation = \"insert_and_remove\" beside it"));
+}
+
+// --- Blades by tables -----------------------------------------------------------------------------------------
+
+const std::string own = "[geometry]\ntype = 'propeller'\ndiameter = 0.4\nblades = 3\n";
+const std::string columns =
+    "'r/R' = [0.2, 0.4, 0.6, 0.8, 0.95, 1.0]\n'c/D' = [0.18, 0.24, 0.28, 0.27, 0.18, 0.0]\n"
+    "'t/D' = [0.04, 0.03, 0.02, 0.012, 0.006, 0.004]\n";
+const std::string more_columns =
+    "'P/D' = [0.9, 1.0, 1.05, 1.0, 0.95, 0.9]\nskew = [0, 2, 5, 10, 16, 20]\n'f/c' = [0.02, 0.02, 0.02, 0.02, 0.015, "
+    "0.01]\n";
+
+TEST_F(PropellerCase, TakesATableInlineOrFromAFile) {
+  const ProgramResult inline_result = run_case(own + "[geometry.table]\n" + columns + more_columns + coarse);
+  ASSERT_EQ(inline_result.status, 0) << inline_result.err;
+  const nlohmann::json from_keys = results();
+  EXPECT_EQ(from_keys["propeller"]["sections"].size(), 8u);
+  EXPECT_TRUE(from_keys["geometry"]["closed"]);
+  // The same in other measures: lengths, and the thickness over the chord.
+  std::string table = "r/R,chord,thickness,pitch,skew,camber\n";
+  const std::vector<std::vector<double>> rows{{0.2, 0.18, 0.04, 0.9, 0, 0.02},      {0.4, 0.24, 0.03, 1.0, 2, 0.02},
+                                              {0.6, 0.28, 0.02, 1.05, 5, 0.02},     {0.8, 0.27, 0.012, 1.0, 10, 0.02},
+                                              {0.95, 0.18, 0.006, 0.95, 16, 0.015}, {1.0, 0.0, 0.004, 0.9, 20, 0.01}};
+  for (const auto& r : rows)
+    table += fmt::format("{},{},{},{},{},{}\n", r[0], 0.4 * r[1], 0.4 * r[2], 0.4 * r[3], r[4], 0.4 * r[1] * r[5]);
+  write("blade.csv", table);
+  ASSERT_EQ(run_case(own + "table_file = 'blade.csv'\n" + coarse).status, 0);
+  const double volume = from_keys["properties"]["volume"]["value"];
+  EXPECT_NEAR(results()["properties"]["volume"]["value"].get<double>(), volume, 1e-9 * volume);
+}
+
+TEST_F(PropellerCase, RefusesTablesThatContradictThemselves) {
+  const auto refused = [&](const std::string& table, const std::string& keys = "") {
+    const ProgramResult result = run_case(own + keys + "[geometry.table]\n" + table);
+    EXPECT_EQ(result.status, 2);
+    return result.err;
+  };
+  EXPECT_THAT(refused(columns), HasSubstr("the column pitch is missing; expected \"pitch\" or \"P/D\""));
+  EXPECT_THAT(refused(columns + more_columns, "pitch_ratio = 1.0\n"),
+              HasSubstr("found pitch_ratio as a column and as a key"));
+  EXPECT_THAT(refused(columns + "chord = [1, 1, 1, 1, 1, 1]\n", "pitch_ratio = 1.0\n"),
+              HasSubstr("found the columns chord and c/D; expected one of them"));
+  EXPECT_THAT(refused(columns + "skew = [1, 2]\n", "pitch_ratio = 1.0\n"),
+              HasSubstr("case.toml:6: geometry.table: found 2 values of skew for 6 of r/R"));
+  EXPECT_THAT(refused("'r/R' = [0.2, 0.6, 1.0]\nchord = [80, 90, 0]\nthickness = [10, 5, 1]\n", "pitch_ratio = 1.0\n"),
+              HasSubstr("expected lengths in the unit of the diameter, or c/D"));
+  EXPECT_THAT(refused("'r/R' = [0.2, 0.6, 1.0]\nchord = [0.1, 0.1, 0]\n", "pitch_ratio = 1.0\n"),
+              HasSubstr("the column thickness is missing; expected \"thickness\", \"t/D\" or \"t/c\""));
+  EXPECT_THAT(
+      refused("'r/R' = [0.2, 0.6, 1.0]\nchord = [0.1, 0, 0]\nthickness = [0.01, 0.01, 0]\n", "pitch_ratio = 1.0\n"),
+      HasSubstr("row 2 (r/R = 0.6): the chord is 0"));
+  EXPECT_THAT(refused(columns, "series = 'kaplan'\narea_ratio = 0.6\npitch_ratio = 1.0\n"),
+              HasSubstr("found 2 of \"series\""));
+  EXPECT_THAT(run_case(own).err, HasSubstr("found none of \"series\", \"table\""));
+}
+
+TEST_F(PropellerCase, TakesThePointsOfItsSections) {
+  std::string sections;
+  for (const double ratio : {0.2, 0.5, 0.8, 1.0}) {
+    const double chord = 0.1 - 0.05 * ratio;
+    std::string points = "x,y\n";
+    for (const auto& [x, y] : std::vector<std::pair<double, double>>{
+             {-0.5, 0}, {-0.25, 0.06}, {0, 0.08}, {0.3, 0.05}, {0.5, 0.01}, {0.3, 0}, {0, 0}, {-0.25, 0}, {-0.5, 0}})
+      points += fmt::format("{},{}\n", chord * x, chord * y);
+    write(fmt::format("s{}.csv", ratio), points);
+    sections += fmt::format("[[geometry.section]]\n'r/R' = {}\nfile = 's{}.csv'\n", ratio, ratio);
+  }
+  const ProgramResult result = run_case(own + "pitch_ratio = 1.0\n" + sections + coarse);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(results()["propeller"]["control_points"], (std::vector<int>{9, 4}));
+  EXPECT_NEAR(results()["propeller"]["sections"][1]["chord"].get<double>(), 0.075, 1e-12);
+}
+
+// --- Edits ----------------------------------------------------------------------------------------------------
+
+TEST_F(PropellerCase, MovesControlPointsAsTold) {
+  ASSERT_EQ(run_case(kaplan + coarse).status, 0);
+  const double before = results()["propeller"]["blade_volume"]["value"];
+  const ProgramResult result = run_case(kaplan +
+                                        "[[geometry.edit]]\n'r/R' = 0.7\npoint = 7\nmove_x = 2.0\n"
+                                        "[[geometry.edit]]\n'r/R' = 0.7\npoint = 8\nmove_y = -0.5\n"
+                                        "[[geometry.edit]]\n'r/R' = 0.6\npoint = 9\nsmooth = true\n" +
+                                        coarse);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const double after = results()["propeller"]["blade_volume"]["value"];
+  EXPECT_GT(std::abs(after - before), 1.0);
+  EXPECT_LT(std::abs(after - before), 0.05 * before);
+}
+
+TEST_F(PropellerCase, RefusesEditsOfWhatIsNotThere) {
+  const auto refused = [&](const std::string& edit) {
+    return run_case(kaplan + "[[geometry.edit]]\n" + edit + coarse).err;
+  };
+  EXPECT_THAT(refused("'r/R' = 0.65\npoint = 7\nmove_x = 2.0\n"), HasSubstr("the blade has sections at 0.2, 0.3"));
+  EXPECT_THAT(refused("'r/R' = 0.6\npoint = 25\nmove_x = 2.0\n"),
+              HasSubstr("section 5, control point 25: expected one from 2 to 24"));
+  EXPECT_THAT(refused("'r/R' = 0.6\npoint = 7\n"), HasSubstr("expected exactly one of \"move_x\""));
 }
 
 }  // namespace
