@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "io/case/analysis_checks.h"
@@ -18,6 +19,9 @@ solver::Quadratic<Dim> constant(double value) {
   return polynomial;
 }
 
+/// Of moments along rays.
+constexpr double load_tolerance = 1e-12;
+
 double density_of(const CaseKeys& keys) {
   return keys.material && keys.material->density ? *keys.material->density : *keys.properties.density;
 }
@@ -26,7 +30,7 @@ double density_of(const CaseKeys& keys) {
 template <class Kernel>
 std::shared_ptr<const solver::DomainLoad<Kernel::dimension>> load_of(
     const Kernel& kernel, const std::vector<std::optional<ExpressionText>>& texts, const CaseFile& file,
-    const geometry::ElementTable<Kernel::dimension>& table) {
+    const geometry::ElementTable<Kernel::dimension>& table, const std::string& key) {
   constexpr int dim = Kernel::dimension;
   std::vector<solver::Quadratic<dim>> constants;
   std::vector<quadrature::IntegrandFactory<dim>> functions;
@@ -38,7 +42,7 @@ std::shared_ptr<const solver::DomainLoad<Kernel::dimension>> load_of(
     functions.push_back(compile_integrand<dim>(expression, ExpressionScope::domain, file.definitions));
   }
   if (constants.size() == texts.size()) return solver::polynomial_load(kernel, std::move(constants));
-  return solver::expression_load(kernel, std::move(functions), table);
+  return solver::expression_load(kernel, std::move(functions), table, load_tolerance, key);
 }
 
 template <int Dim>
@@ -74,7 +78,7 @@ std::shared_ptr<const solver::DomainLoad<Dim>> temperature_load(const solver::El
     return solver::thermal_load(kernel, stress, constant<Dim>(*value));
   }
   return solver::thermal_load(kernel, stress, compile_integrand<Dim>(text, ExpressionScope::domain, file.definitions),
-                              table);
+                              table, load_tolerance, "[body_force] temperature");
 }
 
 template <int Dim>
@@ -91,7 +95,7 @@ solver::Loads<Dim> body_forces(const CaseFile& file, const solver::Elasticity<Di
   if (keys.centrifugal) loads.push_back(rotation_load(kernel, *keys.centrifugal, density_of(file.keys)));
   if (keys.force) {
     const auto& axes = keys.force->axes;
-    loads.push_back(load_of(kernel, {axes.begin(), axes.begin() + Dim}, file, table));
+    loads.push_back(load_of(kernel, {axes.begin(), axes.begin() + Dim}, file, table, "[body_force] force"));
   }
   if (keys.temperature) loads.push_back(temperature_load(kernel, file, table));
   return loads;
@@ -121,7 +125,7 @@ solver::Loads<Dim> case_loads(const CaseFile& file, const solver::Equation<Dim>&
                               const geometry::ElementTable<Dim>& table) {
   if (const auto* laplace = std::get_if<solver::Laplace<Dim>>(&equation)) {
     if (!file.keys.source.term) return {};
-    return {load_of(*laplace, {file.keys.source.term->value}, file, table)};
+    return {load_of(*laplace, {file.keys.source.term->value}, file, table, "[source] value")};
   }
   if (!file.keys.body_force) return {};
   return body_forces(file, std::get<solver::Elasticity<Dim>>(equation), table);

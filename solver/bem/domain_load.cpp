@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -48,18 +49,20 @@ class LoadFunctions {
  public:
   explicit LoadFunctions(std::vector<Quadratic<Dim>> polynomials) : polynomials_(std::move(polynomials)) {}
   LoadFunctions(std::vector<quadrature::IntegrandFactory<Dim>> factories, const geometry::ElementTable<Dim>& table,
-                double tolerance)
+                double tolerance, const std::string& name)
       : factories_(std::move(factories)),
+        name_(name),
         tolerance_(tolerance),
         resolution_(resolve_along_chords<Dim>(factories_, table, tolerance)) {}
 
   int components() const { return static_cast<int>(is_closed_form() ? polynomials_.size() : factories_.size()); }
   bool is_closed_form() const { return factories_.empty(); }
   double resolution_length() const { return resolution_.panel_length; }
+  const std::vector<RayPeak<Dim>>& peaks() const { return resolution_.peaks; }
 
   std::unique_ptr<RayFunctions<Dim>> rays() const {
     if (is_closed_form()) return quadratic_rays<Dim>(polynomials_);
-    return sampled_rays<Dim>(factories_, resolution_, tolerance_);
+    return sampled_rays<Dim>(factories_, name_, resolution_, tolerance_);
   }
 
   std::vector<quadrature::IntegrandFactory<Dim>> factories() const {
@@ -80,8 +83,9 @@ class LoadFunctions {
  private:
   std::vector<Quadratic<Dim>> polynomials_;
   std::vector<quadrature::IntegrandFactory<Dim>> factories_;
+  std::string name_;
   double tolerance_ = 0.0;
-  RayResolution resolution_;
+  RayResolution<Dim> resolution_;
 };
 
 /// A source or force.
@@ -162,6 +166,7 @@ class ForceLoad : public DomainLoad<Kernel::dimension> {
   std::vector<quadrature::IntegrandFactory<dimension>> density() const override { return functions_.factories(); }
   bool is_closed_form() const override { return functions_.is_closed_form(); }
   double resolution_length() const override { return functions_.resolution_length(); }
+  std::vector<RayPeak<dimension>> peaks() const override { return functions_.peaks(); }
 
  private:
   Kernel kernel_;
@@ -277,6 +282,7 @@ class ThermalLoad : public DomainLoad<Dim> {
   bool is_thermal() const override { return true; }
   bool is_closed_form() const override { return temperature_.is_closed_form(); }
   double resolution_length() const override { return temperature_.resolution_length(); }
+  std::vector<RayPeak<Dim>> peaks() const override { return temperature_.peaks(); }
 
  private:
   Elasticity<Dim> kernel_;
@@ -340,10 +346,10 @@ std::shared_ptr<const DomainLoad<Dim>> centrifugal_load(const Elasticity<Dim>& k
 template <class Kernel>
 std::shared_ptr<const DomainLoad<Kernel::dimension>> expression_load(
     const Kernel& kernel, std::vector<quadrature::IntegrandFactory<Kernel::dimension>> components,
-    const geometry::ElementTable<Kernel::dimension>& table, double tolerance) {
+    const geometry::ElementTable<Kernel::dimension>& table, double tolerance, const std::string& name) {
   require_count<Kernel>(components);
-  return std::make_shared<ForceLoad<Kernel>>(kernel,
-                                             LoadFunctions<Kernel::dimension>(std::move(components), table, tolerance));
+  return std::make_shared<ForceLoad<Kernel>>(
+      kernel, LoadFunctions<Kernel::dimension>(std::move(components), table, tolerance, name));
 }
 
 template <int Dim>
@@ -357,10 +363,11 @@ std::shared_ptr<const DomainLoad<Dim>> thermal_load(const Elasticity<Dim>& kerne
 template <int Dim>
 std::shared_ptr<const DomainLoad<Dim>> thermal_load(const Elasticity<Dim>& kernel, double stress_per_degree,
                                                     const quadrature::IntegrandFactory<Dim>& temperature,
-                                                    const geometry::ElementTable<Dim>& table, double tolerance) {
+                                                    const geometry::ElementTable<Dim>& table, double tolerance,
+                                                    const std::string& name) {
   return std::make_shared<ThermalLoad<Dim>>(
       kernel, stress_per_degree,
-      LoadFunctions<Dim>(std::vector<quadrature::IntegrandFactory<Dim>>{temperature}, table, tolerance));
+      LoadFunctions<Dim>(std::vector<quadrature::IntegrandFactory<Dim>>{temperature}, table, tolerance, name));
 }
 
 template std::shared_ptr<const DomainLoad<2>> polynomial_load(const Laplace<2>&, std::vector<Quadratic<2>>);
@@ -371,23 +378,29 @@ template std::shared_ptr<const DomainLoad<2>> centrifugal_load(const Elasticity<
 template std::shared_ptr<const DomainLoad<3>> centrifugal_load(const Elasticity<3>&, const Rotation&);
 template std::shared_ptr<const DomainLoad<2>> expression_load(const Laplace<2>&,
                                                               std::vector<quadrature::IntegrandFactory<2>>,
-                                                              const geometry::ElementTable<2>&, double);
+                                                              const geometry::ElementTable<2>&, double,
+                                                              const std::string&);
 template std::shared_ptr<const DomainLoad<3>> expression_load(const Laplace<3>&,
                                                               std::vector<quadrature::IntegrandFactory<3>>,
-                                                              const geometry::ElementTable<3>&, double);
+                                                              const geometry::ElementTable<3>&, double,
+                                                              const std::string&);
 template std::shared_ptr<const DomainLoad<2>> expression_load(const Elasticity<2>&,
                                                               std::vector<quadrature::IntegrandFactory<2>>,
-                                                              const geometry::ElementTable<2>&, double);
+                                                              const geometry::ElementTable<2>&, double,
+                                                              const std::string&);
 template std::shared_ptr<const DomainLoad<3>> expression_load(const Elasticity<3>&,
                                                               std::vector<quadrature::IntegrandFactory<3>>,
-                                                              const geometry::ElementTable<3>&, double);
+                                                              const geometry::ElementTable<3>&, double,
+                                                              const std::string&);
 template std::shared_ptr<const DomainLoad<2>> thermal_load(const Elasticity<2>&, double, const Quadratic<2>&);
 template std::shared_ptr<const DomainLoad<3>> thermal_load(const Elasticity<3>&, double, const Quadratic<3>&);
 template std::shared_ptr<const DomainLoad<2>> thermal_load(const Elasticity<2>&, double,
                                                            const quadrature::IntegrandFactory<2>&,
-                                                           const geometry::ElementTable<2>&, double);
+                                                           const geometry::ElementTable<2>&, double,
+                                                           const std::string&);
 template std::shared_ptr<const DomainLoad<3>> thermal_load(const Elasticity<3>&, double,
                                                            const quadrature::IntegrandFactory<3>&,
-                                                           const geometry::ElementTable<3>&, double);
+                                                           const geometry::ElementTable<3>&, double,
+                                                           const std::string&);
 
 }  // namespace isorim::solver

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -49,6 +50,14 @@ class LoadIntegrand {
   }
 };
 
+/// Where functions are singular or much larger than elsewhere.
+template <int Dim>
+struct RayPeak {
+  geometry::Point<Dim> place;
+  /// Below this distance from the place the functions are smooth; 0 for a singularity.
+  double width = 0.0;
+};
+
 template <int Dim>
 class DomainLoad {
  public:
@@ -66,6 +75,8 @@ class DomainLoad {
   /// Rules of some ten points on parts of the boundary of this length do not miss peaks of its functions; infinite if
   /// there are none.
   virtual double resolution_length() const = 0;
+  /// Where its functions are singular or peak sharply, beside that.
+  virtual std::vector<RayPeak<Dim>> peaks() const { return {}; }
 };
 
 /// c + g . z + z . Q z.
@@ -102,14 +113,16 @@ template <int Dim>
 std::shared_ptr<const DomainLoad<Dim>> centrifugal_load(const Elasticity<Dim>& kernel, const Rotation& rotation);
 
 /// A source or force given by functions of the place, integrated along the rays by rules that are refined until they
-/// meet the tolerance (relative to the largest value of the functions). The table gives the domain, on chords of which
-/// the functions are sampled first to find how fine the rules have to be, so that narrow peaks are not missed; a peak
-/// narrower than about 1e-3 of the domain may be. Throws InputError for a wrong number of components, NumericalError
-/// (also from the integrand) at a value that is not finite, naming the point.
+/// meet the tolerance (relative to the largest mean of the functions along a chord). The table gives the domain, on
+/// chords of which the functions are sampled first to find how fine the rules have to be, so that narrow peaks are not
+/// missed; a peak narrower than about 1e-3 of the domain may be. One sharp peak, or a logarithm in the plane, costs
+/// little more than a smooth function. Throws InputError for a wrong number of components, and (from the integrand) at
+/// a value that is not finite, with the `name` of the load and the point.
 template <class Kernel>
 std::shared_ptr<const DomainLoad<Kernel::dimension>> expression_load(
     const Kernel& kernel, std::vector<quadrature::IntegrandFactory<Kernel::dimension>> components,
-    const geometry::ElementTable<Kernel::dimension>& table, double tolerance = 1e-12);
+    const geometry::ElementTable<Kernel::dimension>& table, double tolerance = 1e-12,
+    const std::string& name = "the load");
 
 /// Thermal expansion by a temperature theta above that of the unloaded body. beta is the stress that a restrained body
 /// has per degree: E alpha / (1 - 2 nu) in space and plane strain, E alpha / (1 - nu) in plane stress. Instead of a
@@ -121,7 +134,8 @@ std::shared_ptr<const DomainLoad<Dim>> thermal_load(const Elasticity<Dim>& kerne
 template <int Dim>
 std::shared_ptr<const DomainLoad<Dim>> thermal_load(const Elasticity<Dim>& kernel, double stress_per_degree,
                                                     const quadrature::IntegrandFactory<Dim>& temperature,
-                                                    const geometry::ElementTable<Dim>& table, double tolerance = 1e-12);
+                                                    const geometry::ElementTable<Dim>& table, double tolerance = 1e-12,
+                                                    const std::string& name = "the temperature");
 
 template <int Dim>
 using Loads = std::vector<std::shared_ptr<const DomainLoad<Dim>>>;

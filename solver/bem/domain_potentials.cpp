@@ -14,6 +14,7 @@
 #include "quadrature/piece_samples.h"
 #include "solver/bem/divided_table.h"
 #include "solver/bem/domain_load.h"
+#include "solver/bem/peak_targets.h"
 
 namespace isorim::solver {
 
@@ -245,6 +246,8 @@ class LoadIntegrals {
     const quadrature::TargetRules<Dim>* rules = nullptr;
     std::size_t elements = 0;
     std::shared_ptr<const DividedTable<Dim>> divided;
+    /// Null if there are none.
+    std::shared_ptr<const PeakTargets<Dim>> peaks;
     std::shared_ptr<const quadrature::TargetRules<Dim>> own_rules;
     std::vector<quadrature::ElementPiece<Dim>> pieces;
     Values<Dim> allowed = Values<Dim>::Zero();
@@ -257,7 +260,11 @@ class LoadIntegrals {
     const Target<Dim> own_target = choice.divided ? choice.divided->target(target) : target;
     Values<Dim> sum = Values<Dim>::Zero();
     for (std::size_t e = 0; e < choice.elements; ++e) {
-      const NodeView<Dim> nodes = choice.rules->nodes(static_cast<int>(e), own_target, buffer(thread));
+      const auto element = static_cast<int>(e);
+      const Target<Dim> hardest = choice.peaks ? choice.peaks->on(element, own_target) : own_target;
+      NodeView<Dim> nodes = choice.rules->nodes(element, hardest, buffer(thread));
+      // Offsets are those from the target that the rule is made for.
+      if (hardest.position != target.position) nodes.offset = {};
       sums(thread).add(target.position, nodes, sum);
     }
     return sum;
@@ -294,28 +301,39 @@ class LoadIntegrals {
     return (options_.tolerance * allowed).max(std::numeric_limits<double>::min());
   }
 
-  Choice rules_of_degree(int degree, const std::shared_ptr<const DividedTable<Dim>>& divided) const {
+  Choice rules_of_degree(int degree, const std::shared_ptr<const DividedTable<Dim>>& divided,
+                         const std::shared_ptr<const PeakTargets<Dim>>& peaks) const {
     const geometry::ElementTable<Dim>& table = divided ? divided->table() : table_;
     const typename quadrature::TargetRules<Dim>::Options options{0.1 * options_.tolerance, degree};
     auto rules = std::make_shared<const quadrature::TargetRules<Dim>>(table, options);
-    return {rules.get(), table.elements.size(), divided, rules, {}, Values<Dim>::Zero()};
+    return {rules.get(), table.elements.size(), divided, peaks, rules, {}, Values<Dim>::Zero()};
   }
+
+  /// A part of the domain's size that elements do not exceed if there are peaks: most have one hard place at the most.
+  static constexpr double part_with_peaks = 1.0 / 6.0;
 
   /// Rules of rising order until two agree at the samples; the lesser is chosen. No rules, if none do.
   Choice choose() {
     double length = std::numeric_limits<double>::infinity();
-    for (const auto& load : loads_) length = std::min(length, load->resolution_length());
+    std::vector<RayPeak<Dim>> places;
+    for (const auto& load : loads_) {
+      length = std::min(length, load->resolution_length());
+      for (const RayPeak<Dim>& peak : load->peaks()) places.push_back(peak);
+    }
+    if (!places.empty()) length = std::min(length, part_with_peaks * geometry::bounding_box(table_).diagonal());
     std::shared_ptr<const DividedTable<Dim>> divided;
-    Choice choice{&rules_, table_.elements.size(), nullptr, nullptr, {}, Values<Dim>::Zero()};
+    std::shared_ptr<const PeakTargets<Dim>> peaks;
+    Choice choice{&rules_, table_.elements.size(), nullptr, nullptr, nullptr, {}, Values<Dim>::Zero()};
     std::vector<int> degrees{8, 14, 20};
     if (std::isfinite(length)) {
       divided = std::make_shared<const DividedTable<Dim>>(table_, length);
-      choice = rules_of_degree(8, divided);
+      if (!places.empty()) peaks = std::make_shared<const PeakTargets<Dim>>(divided->table(), std::move(places));
+      choice = rules_of_degree(8, divided, peaks);
       degrees = {14, 20, 26};
     }
     std::vector<Values<Dim>> found = at_samples(choice);
     for (const int degree : degrees) {
-      Choice next = rules_of_degree(degree, divided);
+      Choice next = rules_of_degree(degree, divided, peaks);
       const std::vector<Values<Dim>> better = at_samples(next);
       const Values<Dim> allowed = allowance(better);
       bool agree = true;

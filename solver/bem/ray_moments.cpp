@@ -98,9 +98,9 @@ struct RayPanel {
 template <int Dim>
 class SampledRays : public RayFunctions<Dim> {
  public:
-  SampledRays(std::span<const quadrature::IntegrandFactory<Dim>> components, const RayResolution& resolution,
-              double tolerance)
-      : resolution_(resolution), allowed_(tolerance * resolution.scale) {
+  SampledRays(std::span<const quadrature::IntegrandFactory<Dim>> components, const std::string& name,
+              const RayResolution<Dim>& resolution, double tolerance)
+      : name_(name), resolution_(resolution), tolerance_(tolerance), allowed_(tolerance * resolution.scale) {
     for (const auto& make : components) functions_.push_back(make());
   }
 
@@ -119,7 +119,7 @@ class SampledRays : public RayFunctions<Dim> {
     at_target_ = needs_value_at_target(kinds) ? at(target) : Eigen::VectorXd::Zero(components());
     rays_.resize(Dim, count);
     for (Eigen::Index q = 0; q < count; ++q) rays_.col(q) = ray(target, nodes, static_cast<std::size_t>(q));
-    std::vector<RayPanel> panels = first_panels();
+    std::vector<RayPanel> panels = resolution_.peaks.empty() ? equal_panels() : graded_panels(target);
     const RayRule* rule = &ray_rule(resolution_.order);
     while (!panels.empty()) {
       unresolved_.clear();
@@ -140,7 +140,25 @@ class SampledRays : public RayFunctions<Dim> {
   static constexpr double most_first_panels = 256.0;
   static constexpr std::size_t points_at_once = 4096;
 
-  std::vector<RayPanel> first_panels() const {
+  std::vector<RayPanel> graded_panels(const geometry::Point<Dim>& target) const {
+    std::vector<RayPanel> panels;
+    std::vector<double> cuts;
+    for (Eigen::Index q = 0; q < rays_.cols(); ++q) {
+      cuts.assign(1, 1.0);
+      for (const RayPeak<Dim>& peak : resolution_.peaks) append_cuts<Dim>(target, rays_.col(q), peak, cuts);
+      std::sort(cuts.begin(), cuts.end());
+      double first = 0.0;
+      for (const double cut : cuts) {
+        // Beside ln t panels must not be longer than they are far from 0.
+        for (; first > 0.0 && cut > 2.0 * first; first *= 2.0) panels.push_back({q, first, first, 0});
+        if (cut > first) panels.push_back({q, first, cut - first, 0});
+        first = cut;
+      }
+    }
+    return panels;
+  }
+
+  std::vector<RayPanel> equal_panels() const {
     std::vector<RayPanel> panels;
     for (Eigen::Index q = 0; q < rays_.cols(); ++q) {
       const double wanted = std::ceil(rays_.col(q).norm() / resolution_.panel_length);
@@ -174,13 +192,15 @@ class SampledRays : public RayFunctions<Dim> {
     }
   }
 
-  [[noreturn]] static void refuse(double value, const geometry::Point<Dim>& point) {
+  [[noreturn]] void refuse(double value, const geometry::Point<Dim>& point) const {
     std::string place = fmt::format("({:.6g}, {:.6g}", point[0], point[1]);
     if constexpr (Dim == 3) place += fmt::format(", {:.6g}", point[2]);
-    throw NumericalError(
-        fmt::format("the load is {} at {}); expected a finite value: loads are integrated along rays from points of "
-                    "the domain and of its boundary to all of the boundary, which leave a domain that is not convex",
-                    std::isnan(value) ? "nan" : fmt::format("{}", value), place));
+    throw InputError(fmt::format(
+        "{} is {} at {}); expected a finite value: loads are integrated along rays from points of the domain and of "
+        "its "
+        "boundary to all of the boundary, which leave a domain that is not convex; give an expression that is finite "
+        "there too",
+        name_, std::isnan(value) ? "nan" : fmt::format("{}", value), place));
   }
 
   void integrate(const geometry::Point<Dim>& target, std::span<const RayPanel> panels, const RayRule& rule,
@@ -211,7 +231,8 @@ class SampledRays : public RayFunctions<Dim> {
   template <class Values>
   bool is_resolved(const Values& values, const RayRule& rule, double length) const {
     const Eigen::Map<const Eigen::MatrixXd> tail(rule.tail.data(), rule.size(), 2);
-    return (values * tail).cwiseAbs().maxCoeff() * length <= allowed_;
+    const double left = (values * tail).cwiseAbs().maxCoeff();
+    return left * length <= allowed_ || left <= tolerance_ * values.cwiseAbs().maxCoeff();
   }
 
   void set_weights(const RayPanel& panel, const RayRule& rule, RayMoment kind) {
@@ -240,8 +261,10 @@ class SampledRays : public RayFunctions<Dim> {
     }
   }
 
+  std::string name_;
   std::vector<quadrature::Integrand<Dim>> functions_;
-  RayResolution resolution_;
+  RayResolution<Dim> resolution_;
+  double tolerance_;
   double allowed_;
   /// Reused storage.
   Eigen::VectorXd at_target_;
@@ -261,16 +284,37 @@ std::unique_ptr<RayFunctions<Dim>> quadratic_rays(std::vector<Quadratic<Dim>> co
 }
 
 template <int Dim>
+void append_cuts(const geometry::Point<Dim>& from, const geometry::Vector<Dim>& d, const RayPeak<Dim>& peak,
+                 std::vector<double>& cuts) {
+  constexpr double least_step = 1e-12;
+  const double length = d.norm();
+  if (!(length > 0.0)) return;
+  const double nearest = std::clamp(d.dot(peak.place - from) / (length * length), 0.0, 1.0);
+  const double away = (from + nearest * d - peak.place).norm();
+  const double step = std::max(std::max(away, peak.width) / length, least_step);
+  if (step >= 1.0) return;
+  if (nearest > 0.0 && nearest < 1.0) cuts.push_back(nearest);
+  double beside = step;
+  for (double next = step; beside < 1.0; next *= 2.0, beside += next) {
+    if (nearest + beside < 1.0) cuts.push_back(nearest + beside);
+    if (nearest - beside > 0.0) cuts.push_back(nearest - beside);
+  }
+}
+
+template <int Dim>
 std::unique_ptr<RayFunctions<Dim>> sampled_rays(std::span<const quadrature::IntegrandFactory<Dim>> components,
-                                                const RayResolution& resolution, double tolerance) {
-  return std::make_unique<SampledRays<Dim>>(components, resolution, tolerance);
+                                                const std::string& name, const RayResolution<Dim>& resolution,
+                                                double tolerance) {
+  return std::make_unique<SampledRays<Dim>>(components, name, resolution, tolerance);
 }
 
 template std::unique_ptr<RayFunctions<2>> quadratic_rays(std::vector<Quadratic<2>>);
 template std::unique_ptr<RayFunctions<3>> quadratic_rays(std::vector<Quadratic<3>>);
+template void append_cuts(const geometry::Point2&, const geometry::Vector2&, const RayPeak<2>&, std::vector<double>&);
+template void append_cuts(const geometry::Point3&, const geometry::Vector3&, const RayPeak<3>&, std::vector<double>&);
 template std::unique_ptr<RayFunctions<2>> sampled_rays(std::span<const quadrature::IntegrandFactory<2>>,
-                                                       const RayResolution&, double);
+                                                       const std::string&, const RayResolution<2>&, double);
 template std::unique_ptr<RayFunctions<3>> sampled_rays(std::span<const quadrature::IntegrandFactory<3>>,
-                                                       const RayResolution&, double);
+                                                       const std::string&, const RayResolution<3>&, double);
 
 }  // namespace isorim::solver

@@ -3,6 +3,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -47,27 +48,39 @@ template <int Dim>
 std::unique_ptr<RayFunctions<Dim>> quadratic_rays(std::vector<Quadratic<Dim>> components);
 
 /// What rules a function needs along rays.
+template <int Dim>
 struct RayResolution {
-  /// Largest absolute value seen, of all components.
+  /// Largest absolute value seen, of all components; of a singularity a multiple of the largest mean on a chord.
   double scale = 0.0;
   /// Points of the rule that each ray, or each panel of one, begins with: one of ray_orders.
   int order = 6;
   /// Rays are cut into panels of about this length, which the rule of most points sees peaks on, or resolves.
   double panel_length = std::numeric_limits<double>::infinity();
+  /// Rays are cut into panels that grow with the distance from these.
+  std::vector<RayPeak<Dim>> peaks;
 };
 
 /// Samples the functions along chords of the domain, climbs to the place where they are largest, and refines rules on
-/// chords through it until they resolve the functions to the tolerance. Values that are not finite are passed over:
-/// the chord may leave the domain where no ray does.
+/// chords through it until they resolve the functions to the tolerance: on whole chords, else on panels that grow with
+/// the distance from that place, else on panels of one length. Values that are not finite are passed over: the chord
+/// may leave the domain where no ray does.
 template <int Dim>
-RayResolution resolve_along_chords(std::span<const quadrature::IntegrandFactory<Dim>> components,
-                                   const geometry::ElementTable<Dim>& table, double tolerance);
+RayResolution<Dim> resolve_along_chords(std::span<const quadrature::IntegrandFactory<Dim>> components,
+                                        const geometry::ElementTable<Dim>& table, double tolerance);
+
+/// Appends the places 0 < t < 1 at which the ray from + t d is to be cut on account of a peak: the nearest to it, and
+/// others at distances s, 3 s, 7 s, ... on both sides, s the distance of the ray from the peak or the peak's width.
+template <int Dim>
+void append_cuts(const geometry::Point<Dim>& from, const geometry::Vector<Dim>& d, const RayPeak<Dim>& peak,
+                 std::vector<double>& cuts);
 
 /// By Gauss-Legendre rules on panels, which are bisected until the last Legendre coefficients of every component fall
-/// below the tolerance times the scale, over the panel's length. With the same points t ln t is integrated by weights
-/// that are exact for polynomials. NumericalError, naming the point, at a value that is not finite.
+/// below the tolerance times the scale, over the panel's length, or times the largest value on the panel. With the same
+/// points t ln t is integrated by weights that are exact for polynomials. InputError, with the name and the point, at a
+/// value that is not finite.
 template <int Dim>
 std::unique_ptr<RayFunctions<Dim>> sampled_rays(std::span<const quadrature::IntegrandFactory<Dim>> components,
-                                                const RayResolution& resolution, double tolerance);
+                                                const std::string& name, const RayResolution<Dim>& resolution,
+                                                double tolerance);
 
 }  // namespace isorim::solver

@@ -21,6 +21,12 @@ constexpr int tried_chords = 128;
 /// Panels shorter than this part of the domain's size are left to the refinement of each ray.
 constexpr double shortest_panel = 1.0 / 64.0;
 
+/// Values that exceed the means along chords by more than this are those of a singularity, and no measure of errors.
+constexpr double most_above_mean = 30.0;
+
+/// Peaks of more than this part of the domain's size are as well integrated by panels of one length.
+constexpr double sharp = 1.0 / 24.0;
+
 /// A peak that panels of some length resolve has points of panels that are so many times as long on it.
 constexpr double visible = 4.0;
 
@@ -59,24 +65,32 @@ class Sampler {
     for (const auto& make : components) functions_.push_back(make());
   }
 
-  RayResolution resolution() {
-    RayResolution resolution;
+  RayResolution<Dim> resolution() {
+    RayResolution<Dim> resolution;
     std::vector<Chord<Dim>> chords;
     for (int i = 0; i < random_chords; ++i) chords.push_back({random_point(), random_point()});
     find_largest(chords);
     climb();
-    resolution.scale = largest_;
-    if (!(largest_ > 0.0)) return resolution;
     chords.resize(tried_chords);
     for (int i = 0; i < tried_chords; ++i) chords.push_back({random_point(), place_});
+    find_largest({chords.begin() + tried_chords, chords.end()});
+    scale_ = std::min(largest_, most_above_mean * scale_);
+    resolution.scale = scale_;
+    if (!(scale_ > 0.0)) return resolution;
     for (const int order : ray_orders) {
       resolution.order = order;
       const bool resolved = std::all_of(chords.begin(), chords.end(),
                                         [&](const Chord<Dim>& chord) { return is_resolved(chord, order, 1.0); });
       if (resolved) return resolution;
     }
+    const RayPeak<Dim> peak = peak_at_largest(chords);
+    if (peak.width < sharp * size_ && is_alone(peak, chords)) {
+      resolution.peaks = {peak};
+      return resolution;
+    }
     double shortest = size_;
-    for (const Chord<Dim>& chord : chords) shortest = std::min(shortest, shortest_resolved(chord));
+    for (const Chord<Dim>& chord : chords)
+      shortest = std::min(shortest, shortest_resolved(chord, shortest_panel * size_));
     resolution.panel_length = std::max(visible * shortest, shortest_panel * size_);
     return resolution;
   }
@@ -118,6 +132,7 @@ class Sampler {
       for (int k = 0; k < points_on_chord; ++k)
         points.col(k) = chord.from + (k + shift(random_)) / points_on_chord * (chord.to - chord.from);
       take_largest(points);
+      scale_ = std::max(scale_, values_.cwiseAbs().rowwise().mean().maxCoeff());
     }
   }
 
@@ -125,7 +140,7 @@ class Sampler {
   void climb() {
     constexpr int tries = 24;
     geometry::Points<Dim> points(Dim, tries);
-    for (double step = size_ / 16.0; step > 1e-6 * size_;) {
+    for (double step = size_ / 16.0; step > 1e-13 * size_;) {
       for (int k = 0; k < tries; ++k) {
         const geometry::Vector<Dim> way = random_point() - place_;
         const double length = way.norm();
@@ -145,11 +160,49 @@ class Sampler {
 
   bool is_resolved(const Chord<Dim>& chord, int order, double part) {
     const Eigen::Map<const Eigen::MatrixXd> tail(ray_rule(order).tail.data(), order, 2);
-    return (sample(panel_points(chord, order)) * tail).cwiseAbs().maxCoeff() * part <= tolerance_ * largest_;
+    const Eigen::MatrixXd& values = sample(panel_points(chord, order));
+    const double left = (values * tail).cwiseAbs().maxCoeff();
+    return left * part <= tolerance_ * scale_ || left <= tolerance_ * values.cwiseAbs().maxCoeff();
+  }
+
+  /// The place where the functions are largest, and how near to it panels have to become short.
+  RayPeak<Dim> peak_at_largest(const std::vector<Chord<Dim>>& chords) {
+    constexpr double no_width = 1e-8;
+    double shortest = size_;
+    for (std::size_t i = tried_chords; i < chords.size(); ++i)
+      shortest = std::min(shortest, shortest_resolved(chords[i], no_width * size_));
+    return {place_, shortest > 2.0 * no_width * size_ ? 0.5 * shortest : 0.0};
+  }
+
+  /// On panels that grow with the distance from the peak, bisected at most twice, the best rule resolves the functions.
+  bool is_alone(const RayPeak<Dim>& peak, const std::vector<Chord<Dim>>& chords) {
+    return std::all_of(chords.begin(), chords.end(), [&](const Chord<Dim>& chord) {
+      const geometry::Vector<Dim> d = chord.to - chord.from;
+      std::vector<double> cuts{0.0, 1.0};
+      append_cuts<Dim>(chord.from, d, peak, cuts);
+      std::sort(cuts.begin(), cuts.end());
+      for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+        if (!is_resolved_by_quarters(chord, peak, cuts[i], cuts[i + 1])) return false;
+      }
+      return true;
+    });
+  }
+
+  bool is_resolved_by_quarters(const Chord<Dim>& chord, const RayPeak<Dim>& peak, double first, double last) {
+    constexpr int parts = 4;
+    constexpr double vicinity = 1e-5;
+    const geometry::Vector<Dim> d = chord.to - chord.from;
+    for (int part = 0; part < parts; ++part) {
+      const Chord<Dim> panel{chord.from + (first + part * (last - first) / parts) * d,
+                             chord.from + (first + (part + 1) * (last - first) / parts) * d};
+      if (std::min((panel.from - peak.place).norm(), (panel.to - peak.place).norm()) < vicinity * size_) continue;
+      if (!is_resolved(panel, ray_orders.back(), (last - first) / parts)) return false;
+    }
+    return true;
   }
 
   /// Length of the shortest panel that bisection by the best rule ends with.
-  double shortest_resolved(const Chord<Dim>& chord) {
+  double shortest_resolved(const Chord<Dim>& chord, double least) {
     double shortest = size_;
     const double whole = (chord.to - chord.from).norm();
     std::vector<Chord<Dim>> work{chord};
@@ -157,7 +210,7 @@ class Sampler {
       const Chord<Dim> panel = work.back();
       work.pop_back();
       const double length = (panel.to - panel.from).norm();
-      if (length <= shortest_panel * size_ || is_resolved(panel, ray_orders.back(), length / whole)) {
+      if (length <= least || is_resolved(panel, ray_orders.back(), length / whole)) {
         if (length < whole) shortest = std::min(shortest, length);
         continue;
       }
@@ -174,6 +227,7 @@ class Sampler {
   double tolerance_;
   std::mt19937 random_{20020905};
   double largest_ = 0.0;
+  double scale_ = 0.0;
   geometry::Point<Dim> place_ = geometry::Point<Dim>::Zero();
   Eigen::MatrixXd values_;
   std::vector<double> row_;
@@ -182,14 +236,14 @@ class Sampler {
 }  // namespace
 
 template <int Dim>
-RayResolution resolve_along_chords(std::span<const quadrature::IntegrandFactory<Dim>> components,
-                                   const geometry::ElementTable<Dim>& table, double tolerance) {
+RayResolution<Dim> resolve_along_chords(std::span<const quadrature::IntegrandFactory<Dim>> components,
+                                        const geometry::ElementTable<Dim>& table, double tolerance) {
   return Sampler<Dim>(components, table, tolerance).resolution();
 }
 
-template RayResolution resolve_along_chords(std::span<const quadrature::IntegrandFactory<2>>,
-                                            const geometry::ElementTable<2>&, double);
-template RayResolution resolve_along_chords(std::span<const quadrature::IntegrandFactory<3>>,
-                                            const geometry::ElementTable<3>&, double);
+template RayResolution<2> resolve_along_chords(std::span<const quadrature::IntegrandFactory<2>>,
+                                               const geometry::ElementTable<2>&, double);
+template RayResolution<3> resolve_along_chords(std::span<const quadrature::IntegrandFactory<3>>,
+                                               const geometry::ElementTable<3>&, double);
 
 }  // namespace isorim::solver

@@ -384,8 +384,8 @@ TEST(DomainLoad, AValueThatIsNotFiniteIsNamed) {
       table);
   try {
     potentials<2>(table, {load}, {free_target<2>({1.1, 0.0})});
-    FAIL() << "expected NumericalError";
-  } catch (const NumericalError& error) {
+    FAIL() << "expected InputError";
+  } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("the load is nan at (-"));
   }
 }
