@@ -31,6 +31,13 @@ Marker marker_of(const Plot& plot, std::size_t series) {
   return plot.series[series].marker.value_or(markers[series % markers.size()]);
 }
 
+/// Colours that come round again are told from the first by the other kind of line.
+Line line_of(const Plot& plot, std::size_t series) {
+  const Line line = plot.series[series].line;
+  if (line == Line::none || series / palette.size() % 2 == 0) return line;
+  return line == Line::solid ? Line::dashed : Line::solid;
+}
+
 /// A point of the plot in pixels.
 struct PlottedPoint {
   enum class Kind { inside, floor, left_out } kind = Kind::inside;
@@ -171,7 +178,7 @@ std::string draw_series(const Plot& plot, const PlottedSeries& all, const Box& b
     const Marker marker = marker_of(plot, i);
     const Marker hollow = marker == Marker::none || marker == Marker::cross ? Marker::circle : marker;
     clipped +=
-        fmt::format("<g class=\"series\">\n{}{}</g>\n", draw_line(plot.series[i].line, colour(i), line_path(all[i])),
+        fmt::format("<g class=\"series\">\n{}{}</g>\n", draw_line(line_of(plot, i), colour(i), line_path(all[i])),
                     draw_markers(marker, colour(i), marker == Marker::cross ? "none" : colour(i), all[i],
                                  PlottedPoint::Kind::inside));
     floor += draw_markers(hollow, colour(i), "#fff", all[i], PlottedPoint::Kind::floor);
@@ -203,7 +210,7 @@ std::vector<LegendEntry> legend_entries(const Plot& plot, const PlottedSeries& a
     if (plot.series[i].name.empty()) continue;
     const Marker marker = marker_of(plot, i);
     entries.push_back(
-        {plot.series[i].name, colour(i), marker == Marker::cross ? "none" : colour(i), plot.series[i].line, marker});
+        {plot.series[i].name, colour(i), marker == Marker::cross ? "none" : colour(i), line_of(plot, i), marker});
   }
   if (count(all, PlottedPoint::Kind::floor) > 0) {
     entries.push_back({"hollow: zero or less, at the floor", "#666", "#fff", Line::none, Marker::circle});

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -171,6 +173,17 @@ TEST(SvgPlot, ALegendThatFitsNowhereStandsBesideTheChart) {
   const XmlElement legend = inside_class(elements, "legend").at(0);
   EXPECT_GT(legend.number("x"), frame_of(elements).right);
   EXPECT_LE(legend.number("x") + legend.number("width"), 720.0);
+}
+
+TEST(SvgPlot, NoTwoOfManyLinesLookAlike) {
+  Plot plot;
+  for (int i = 0; i < 14; ++i) plot.series.push_back({"", {0.0, 1.0}, {0.0, double(i)}, Line::solid, Marker::none});
+  std::set<std::pair<std::string, std::string>> looks;
+  for (const XmlElement& element : parse_xml(to_svg(plot))) {
+    if (element.name != "path" || element.attribute("fill") != "none") continue;
+    looks.emplace(element.attribute("stroke"), element.attribute("stroke-dasharray"));
+  }
+  EXPECT_EQ(looks.size(), 14U);
 }
 
 TEST(SvgPlot, EmptyPlotsAreDrawn) {
