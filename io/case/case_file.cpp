@@ -10,6 +10,7 @@
 #include "io/case/analysis_checks.h"
 #include "io/expression.h"
 #include "io/fit/fit_shape.h"
+#include "io/hull/hull_shape.h"
 #include "io/propeller/propeller_shape.h"
 
 namespace isorim::io {
@@ -33,6 +34,7 @@ std::vector<std::string> shape_quantity_names(const CaseKeys& keys, int dim) {
   std::vector<std::string> more;
   if (std::holds_alternative<FitKeys>(keys.geometry)) more = fit_quantity_names();
   if (std::holds_alternative<PropellerKeys>(keys.geometry)) more = propeller_quantity_names();
+  if (std::holds_alternative<HullKeys>(keys.geometry)) more = hull_quantity_names();
   names.insert(names.end(), more.begin(), more.end());
   return names;
 }
@@ -188,6 +190,11 @@ void check_poles(const CaseKeys& keys, int dim, Complaints& complaints) {
   for (const IntegralKeys& integral : keys.integral) check(integral.pole);
 }
 
+void check_lines_plan(const CaseKeys& keys, Complaints& complaints) {
+  if (!keys.lines_plan || std::holds_alternative<HullKeys>(keys.geometry)) return;
+  complaints.add(keys.lines_plan->where, "found a lines plan of a shape that is no hull; expected type = \"hull\"");
+}
+
 /// The section [geometry] is there and nothing is wrong with its keys.
 bool has_sound_geometry(const Value& root) {
   const Value* geometry = root.find("geometry");
@@ -219,6 +226,13 @@ std::optional<int> build_shape(CaseFile& file, const FileShapeOptions& options, 
       PropellerShape built = build_propeller_shape(*keys);
       file.shape = std::move(built.boundary);
       file.propeller = std::make_shared<const PropellerFacts>(std::move(built.facts));
+      return dim;
+    }
+    if (auto* keys = std::get_if<HullKeys>(&file.keys.geometry)) {
+      keys->folder = file.path.parent_path();
+      HullShape hull = build_hull_shape(*keys);
+      file.shape = std::move(hull.boundary);
+      file.hull = std::make_shared<const HullFacts>(std::move(hull.facts));
       return dim;
     }
     if (dim == 2) {
@@ -253,6 +267,10 @@ std::vector<std::string> fit_quantity_names() {
   return {"control_points", "max_distance", "rms_distance", "bending_energy", "curvature_sign_changes"};
 }
 
+std::vector<std::string> hull_quantity_names() {
+  return {"prismatic", "lcb", "offset_distance", "bending_energy", "curvature_sign_changes"};
+}
+
 std::vector<std::string> propeller_quantity_names() {
   return {"expanded_area_ratio", "developed_area_ratio", "projected_area_ratio", "blade_volume",
           "hub_volume",          "control_points_round", "control_points_across"};
@@ -279,6 +297,7 @@ CaseFile read_case(const Value& root, const std::filesystem::path& path, const F
       check_output(file.keys, *dim, complaints);
     }
   }
+  check_lines_plan(file.keys, complaints);
   complaints.throw_if_any();
   return file;
 }

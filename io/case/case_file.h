@@ -9,6 +9,7 @@
 
 #include "io/case/analysis_keys.h"
 #include "io/case/file_shape.h"
+#include "io/case/lines_plan_keys.h"
 #include "io/case/drawing_keys.h"
 #include "io/case/hydrostatics_keys.h"
 #include "io/case/plane_section_keys.h"
@@ -22,6 +23,7 @@
 /// in section_declarations.cpp and shape_declarations.cpp.
 namespace isorim::io {
 
+struct HullFacts;
 struct PropellerFacts;
 
 /// What to do with a boundary that has free edges when the integrals over its domain are asked for.
@@ -89,6 +91,7 @@ struct CaseKeys {
   PropertiesKeys properties;
   std::vector<IntegralKeys> integral;
   std::vector<PlaneSectionKeys> section;
+  std::optional<LinesPlanKeys> lines_plan;
   std::optional<DrawingKeys> drawings;
   std::optional<MouldKeys> moulds;
   std::optional<HydrostaticsKeys> hydrostatics;
@@ -121,6 +124,8 @@ struct CaseFile {
   std::optional<FitFacts> fit;
   /// If the shape is a propeller, else null.
   std::shared_ptr<const PropellerFacts> propeller;
+  /// If the shape is a hull, else null.
+  std::shared_ptr<const HullFacts> hull;
   /// The case with its overrides, as TOML.
   std::string resolved;
 
@@ -155,6 +160,10 @@ std::vector<std::string> property_names(int dim);
 std::vector<std::string> fit_quantity_names();
 
 /// Those that a propeller has besides: "expanded_area_ratio", "developed_area_ratio", "projected_area_ratio",
+/// Those that a hull has besides: "prismatic" and "lcb" (per cent of the length forward of amidships) of the curve of
+/// sectional areas up to the design draught, "offset_distance", "bending_energy", "curvature_sign_changes".
+std::vector<std::string> hull_quantity_names();
+
 /// "blade_volume", "hub_volume", "control_points_round", "control_points_across".
 std::vector<std::string> propeller_quantity_names();
 

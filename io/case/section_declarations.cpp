@@ -218,6 +218,7 @@ const Schema<CaseKeys>& schema<CaseKeys>() {
           .key("properties", &CaseKeys::properties, {.text = "How the integrals are computed."})
           .key("integral", &CaseKeys::integral, {.text = "Integrals: [[integral]], any number."})
           .key("section", &CaseKeys::section, {.text = "Plane sections of a solid: [[section]], any number."})
+          .key("lines_plan", &CaseKeys::lines_plan, {.text = "The lines plan of a hull."})
           .key("drawings", &CaseKeys::drawings, {.text = "Workshop drawings."})
           .key("moulds", &CaseKeys::moulds, {.text = "Templates of the boards of a mould."})
           .key("hydrostatics", &CaseKeys::hydrostatics, {.text = "A solid afloat."})

@@ -651,8 +651,8 @@ const TypeTags& type_tags<GeometryKeys>() {
   static const TypeTags tags{
       {"circle",    "ellipse", "ellipse_arc", "rectangle", "polygon", "region",  "nurbs",   "sphere",
        "ellipsoid", "torus",   "cylinder",    "cone",      "box",     "revolve", "extrude", "ruled",
-       "loft",      "patches", "tspline",     "propeller", "file",    "fit"},
-      {"hull"},
+       "loft",      "patches", "tspline",     "propeller", "file",    "fit",     "hull"},
+      {},
       "",
       "",
       {{"skin", "loft"}}};

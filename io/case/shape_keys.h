@@ -12,6 +12,7 @@
 #include "geometry/tspline/refinement.h"
 #include "io/cad/read_cad.h"
 #include "io/case/fit_keys.h"
+#include "io/case/hull_keys.h"
 #include "io/case/schema.h"
 #include "io/case/shape_base_keys.h"
 #include "io/propeller/blade_table.h"
@@ -327,6 +328,6 @@ struct FileKeys : SolidKeys {
 using GeometryKeys =
     std::variant<CircleKeys, EllipseKeys, EllipseArcKeys, RectangleKeys, PolygonKeys, RegionKeys, NurbsKeys, SphereKeys,
                  EllipsoidKeys, TorusKeys, CylinderKeys, ConeKeys, BoxKeys, RevolveKeys, ExtrudeKeys, RuledKeys,
-                 LoftKeys, PatchesKeys, TSplineKeys, PropellerKeys, FileKeys, FitKeys>;
+                 LoftKeys, PatchesKeys, TSplineKeys, PropellerKeys, FileKeys, FitKeys, HullKeys>;
 
 }  // namespace isorim::io

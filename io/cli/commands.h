@@ -134,6 +134,31 @@ struct PictureArguments {
 /// is one of its solution.
 int draw_picture(const PictureArguments& arguments, std::ostream& out, std::ostream& err);
 
+/// The hulls of a library as a table.
+int list_hulls(const std::filesystem::path& library, std::ostream& out);
+
+struct HullImportArguments {
+  /// Made if it is not there.
+  std::filesystem::path library;
+  /// Offsets in CSV.
+  std::filesystem::path file;
+  /// The file's name without its extension if absent.
+  std::optional<std::string> name;
+  bool replaces = false;
+};
+/// Puts a table of offsets into a library.
+int import_hull(const HullImportArguments& arguments, std::ostream& out);
+
+struct HullExportArguments {
+  std::filesystem::path library;
+  std::string name;
+  std::filesystem::path file;
+};
+/// Writes a hull of a library as a table of offsets in CSV.
+int export_hull(const HullExportArguments& arguments, std::ostream& out);
+
+int remove_hull(const std::filesystem::path& library, const std::string& name);
+
 /// Makes a folder for results. Throws InputError with its path if it cannot.
 void make_folder(const std::filesystem::path& folder);
 

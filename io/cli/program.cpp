@@ -22,6 +22,13 @@ namespace {
 
 constexpr const char* about = "isorim: integrals over what CAD boundaries enclose, exactly, without a mesh";
 
+struct HullsArguments {
+  std::filesystem::path library;
+  std::string name;
+  HullImportArguments import;
+  HullExportArguments exported;
+};
+
 struct HelpArguments {
   std::vector<std::string> topic;
   bool markdown = false;
@@ -48,6 +55,7 @@ struct Arguments {
   ConvertArguments convert;
   bool loose_faces = false;
   PictureArguments picture;
+  HullsArguments hulls;
   HelpArguments help;
 };
 
@@ -114,6 +122,35 @@ void declare_sweep(CLI::App& sweep, SweepArguments& arguments, SweepFlags& flags
   sweep.add_flag("--json", flags.json, "Prints the summary (or the list) as JSON");
 }
 
+void declare_hulls(CLI::App& app, HullsArguments& arguments) {
+  CLI::App& hulls = *app.add_subcommand("hulls", "Keeps tables of offsets of hulls in a library file (HDF5)");
+  hulls.require_subcommand(1);
+  const auto add_library = [](CLI::App& command, std::filesystem::path& library) {
+    command.add_option("LIBRARY", library, "The library file (.h5)")->required();
+  };
+  CLI::App& list = *hulls.add_subcommand("list", "Tells what hulls a library has");
+  add_library(list, arguments.library);
+  CLI::App& import = *hulls.add_subcommand("import", "Puts a table of offsets into a library, a new one if need be");
+  add_library(import, arguments.import.library);
+  import.add_option("FILE", arguments.import.file, "Offsets (.csv)")->required();
+  import.add_option("--name", arguments.import.name, "Name in the library; that of the file if absent");
+  import.add_flag("--replace", arguments.import.replaces, "Replaces a hull of the same name");
+  CLI::App& exported = *hulls.add_subcommand("export", "Writes a hull of a library as a table of offsets");
+  add_library(exported, arguments.exported.library);
+  exported.add_option("NAME", arguments.exported.name, "Of the hull")->required();
+  exported.add_option("FILE", arguments.exported.file, "Offsets (.csv)")->required();
+  CLI::App& remove = *hulls.add_subcommand("remove", "Takes a hull out of a library");
+  add_library(remove, arguments.library);
+  remove.add_option("NAME", arguments.name, "Of the hull")->required();
+}
+
+int dispatch_hulls(const CLI::App& hulls, const HullsArguments& arguments, std::ostream& out) {
+  if (hulls.got_subcommand("list")) return list_hulls(arguments.library, out);
+  if (hulls.got_subcommand("import")) return import_hull(arguments.import, out);
+  if (hulls.got_subcommand("export")) return export_hull(arguments.exported, out);
+  return remove_hull(arguments.library, arguments.name);
+}
+
 void declare(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version", std::string(io::program_version()), "Prints the version");
   app.require_subcommand(0, 1);
@@ -156,6 +193,7 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->type_name("UNIT");
 
   declare_picture(app, arguments.picture);
+  declare_hulls(app, arguments.hulls);
 
   CLI::App& help = *app.add_subcommand("help", "Explains a command (help run) or case files (help case [SECTION])");
   help.add_option("TOPIC", arguments.help.topic, "A command; or case, with a section or type")->expected(0, 2);
@@ -230,6 +268,8 @@ int dispatch(CLI::App& app, Arguments& arguments, std::ostream& out, std::ostrea
     return convert(arguments.convert, out, err);
   }
   if (app.got_subcommand("picture")) return draw_picture(arguments.picture, out, err);
+
+  if (app.got_subcommand("hulls")) return dispatch_hulls(*app.get_subcommand("hulls"), arguments.hulls, out);
   if (app.got_subcommand("help")) return print_help(arguments.help, out);
   err << app.help();
   return 2;

@@ -11,6 +11,7 @@
 #include "io/cli/commands.h"
 #include "io/cli/interrupts.h"
 #include "io/fit/fit_pictures.h"
+#include "io/hull/lines_plan.h"
 #include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/compute.h"
 #include "io/results/convergence.h"
@@ -55,6 +56,7 @@ void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io
   if (report.hydrostatics) io::write_hydrostatics(folder, *report.hydrostatics, output);
   if (file.fit) io::write_fit_points(folder / "fit_points.csv", *file.fit);
   if (file.fit && output.svg) io::write_fit_svg(folder / "fit.svg", report.title, *file.fit);
+  if (file.hull && file.keys.lines_plan) io::write_lines_plan(folder, *file.hull, *file.keys.lines_plan);
   if (file.keys.convergence) {
     io::write_convergence_csv(folder / "convergence.csv", study);
     io::write_convergence_svg(folder / "convergence.svg", report.title, study);

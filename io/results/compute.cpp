@@ -17,6 +17,7 @@
 #include "io/expression.h"
 #include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/plane_sections.h"
+#include "io/results/hull_report.h"
 #include "io/results/propeller_report.h"
 #include "quadrature/parallel.h"
 #include "quadrature/rim.h"
@@ -430,6 +431,10 @@ Report report_of(const CaseFile& file, const Model<Dim>& model, const RunOptions
   report.cad = file.cad;
   if (file.cad) report.warnings = file.cad->warnings;
   add_fit(file, report);
+  if (file.hull) {
+    report.hull = file.hull;
+    report.hull_quantities = hull_quantities(*file.hull);
+  }
   add_properties(file, model, run, report);
   add_propeller(file, run, report);
   for (const IntegralKeys& keys : file.keys.integral) {

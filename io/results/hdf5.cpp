@@ -301,6 +301,7 @@ void write_report(hid_t file, const Report& report, const AnyModel& model) {
   write_quantities(file, "properties", report.properties);
   write_quantities(file, "integrals", report.integrals);
   if (report.fit) write_quantities(file, "fit", report.fit_quantities);
+  if (report.hull) write_quantities(file, "hull", report.hull_quantities);
   if (report.propeller) write_quantities(file, "propeller", report.propeller_quantities);
   if (report.hydrostatics) write_quantities(file, "hydrostatics", expected_quantities(*report.hydrostatics));
   if (report.analysis) write_analysis(file, *report.analysis, *report.fields);

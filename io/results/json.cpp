@@ -9,6 +9,7 @@
 #include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/analysis_json.h"
 #include "io/results/fit_json.h"
+#include "io/results/hull_report.h"
 #include "io/results/json_parts.h"
 #include "io/results/propeller_report.h"
 #include "io/results/section_json.h"
@@ -86,6 +87,7 @@ std::string to_json(const Report& report) {
   json["geometry"] = geometry_json(report.geometry, report.cad);
   if (report.cad) json["cad"] = cad_json(*report.cad);
   if (report.fit) json["fit"] = fit_json(*report.fit);
+  if (report.hull) json["hull"] = hull_json(*report.hull, report.hull_quantities);
   if (report.propeller) json["propeller"] = propeller_json(*report.propeller, report.propeller_quantities);
   json["properties"] = quantities_json(report.properties);
   json["integrals"] = quantities_json(report.integrals);

@@ -17,6 +17,7 @@
 namespace isorim::io {
 
 struct AnyAnalysis;
+struct HullFacts;
 struct PropellerFacts;
 struct SectionFamily;
 struct HydrostaticsReport;
@@ -123,6 +124,9 @@ struct Report {
   /// If the shape is a propeller (else null), and propeller_quantity_names() of it.
   std::shared_ptr<const PropellerFacts> propeller;
   std::vector<Quantity> propeller_quantities;
+  /// If the shape is a hull, else null, and hull_quantity_names() of it.
+  std::shared_ptr<const HullFacts> hull;
+  std::vector<Quantity> hull_quantities;
   std::vector<Quantity> properties;
   std::vector<Quantity> integrals;
   /// If the case is an analysis; its fields on the boundary, for the writers of pictures.

@@ -10,6 +10,7 @@
 #include "io/analysis/analysis.h"
 #include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/fit_text.h"
+#include "io/results/hull_report.h"
 #include "io/results/plane_sections.h"
 #include "io/results/propeller_report.h"
 
@@ -223,8 +224,8 @@ std::string results_text(const Report& report) {
                    {"expected", Align::right},
                    {"difference", Align::right},
                    {""}});
-  for (const std::vector<Quantity>* list :
-       {&report.fit_quantities, &report.properties, &report.propeller_quantities, &report.integrals}) {
+  for (const std::vector<Quantity>* list : {&report.fit_quantities, &report.hull_quantities, &report.properties,
+                                            &report.propeller_quantities, &report.integrals}) {
     for (const Quantity& quantity : *list) {
       if (quantity.name != "principal_axes") add_quantity(table, report, quantity);
     }
@@ -245,8 +246,9 @@ std::string results_text(const Report& report) {
     }
   }
   add_quantity(table, report, {"closure_defect", single(report.geometry.closure_defect), {}, {}, {}, ""});
-  return fmt::format("{}\n  {}\n{}{}{}{}{}\n{}\n{}{}  {}\n", report.title, geometry_line(report.geometry),
+  return fmt::format("{}\n  {}\n{}{}{}{}{}{}\n{}\n{}{}  {}\n", report.title, geometry_line(report.geometry),
                      cad_line(report), report.fit ? fit_text(*report.fit) : "",
+                     report.hull ? hull_text(*report.hull) : "",
                      report.propeller ? propeller_text(*report.propeller) : "", analysis_line(report),
                      history_text(report), table.text(2), report.sections ? sections_text(*report.sections) : "",
                      report.hydrostatics ? hydrostatics_text(*report.hydrostatics) : "", status_line(report));

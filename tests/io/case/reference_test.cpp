@@ -72,13 +72,6 @@ TEST(Reference, HoldsEveryKeyWithItsDefaultAndRange) {
   EXPECT_THAT(reference, HasSubstr("| `angle` | real, > 0 and <= 360, degrees, default 360.0 |"));
 }
 
-TEST(Reference, LaterTypesAreNotListed) {
-  for (const char* later : {"hull"}) {
-    EXPECT_THAT(case_overview(), ::testing::Not(HasSubstr(later)));
-    EXPECT_THAT(case_reference_markdown(), ::testing::Not(HasSubstr(later)));
-  }
-}
-
 TEST(Reference, TopicLinesFitTheTerminal) {
   for (const Description* table : all_tables()) {
     const std::string topic = case_topic(table->name);

@@ -57,9 +57,6 @@ const std::vector<BadCase> keys{
     {"UnknownType",
      "[geometry]\ntype = 'circel'\n",
      {"case.toml:2: geometry.type: found the text \"circel\"", "(did you mean \"circle\"?)"}},
-    {"LaterType",
-     "[geometry]\ntype = 'hull'\noffsets = 'a.csv'\n",
-     {"the type \"hull\" is not available in this version"}},
     {"LaterKey", circle + "clip = { normal = [1, 0] }\n", {"geometry.clip: not available in this version"}},
 };
 

@@ -1,0 +1,144 @@
+#include "io/hull/offset_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "geometry/errors.h"
+
+namespace isorim::io {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Heights and half-breadths as parts, stations from forward, rows and columns in no order.
+const std::string cargo =
+    "# A small form\n"
+    "name,Cargo, small\n"
+    "length,100\nbeam,16\ndraught,6\n"
+    "stations,10,aft\nwaterlines,draught\nhalf_breadths,waterline\n"
+    "station,tangent,1,0.5,deck height,deck half-breadth,area\n"
+    "0,0,0,0,1.5,0.1,0\n"
+    "10,0,0.5,,1.5,0.75,0.1   # no half-breadth at 0.5\n"
+    "5,1,1,1,1.4,1,1\n"
+    "max,0.7,1,0.95,,1,\n";
+
+TEST(OffsetFile, ReadsPartsOfDraughtAndBreadth) {
+  const geometry::OffsetTable table = parse_offsets(cargo, "cargo.csv");
+  EXPECT_EQ(table.name, "Cargo, small");
+  EXPECT_EQ(table.stations, (std::vector<double>{0.0, 50.0, 100.0}));
+  EXPECT_EQ(table.station_names, (std::vector<std::string>{"10", "5", "0"}));
+  EXPECT_EQ(table.waterlines, (std::vector<double>{3.0, 6.0}));
+  EXPECT_TRUE(std::isnan(table.half_breadths(0, 0)));
+  EXPECT_DOUBLE_EQ(table.half_breadths(0, 1), 7.6);
+  EXPECT_DOUBLE_EQ(table.half_breadths(1, 0), 4.0);
+  EXPECT_DOUBLE_EQ(table.keel(0, 1), 5.6);
+  EXPECT_EQ(table.keel(1, 1), 0.0);
+  EXPECT_DOUBLE_EQ(table.deck(1, 1), 8.4);
+  EXPECT_DOUBLE_EQ(table.deck(0, 0), 6.0);
+  EXPECT_TRUE(table.has_tangent_bottom);
+  EXPECT_EQ(table.baseline, 0.0);
+  EXPECT_EQ(table.after_perpendicular, 0.0);
+  EXPECT_EQ(table.area_ratios, (std::vector<double>{0.1, 1.0, 0.0}));
+}
+
+const std::string yacht =
+    "name,Yacht\nlength,10\nbeam,3\ndraught,0.6\n"
+    "station,keel half-breadth,keel height,z=0.2,wl 0.6,1.2,chine half-breadth,chine height\n"
+    "-4.5,0,0.3,-,0.5,1,0.7,0.8\n"
+    "0,0,0,0.4,1.2,1.5,1.3,0.7\n"
+    "4,0,0.1,0.1,0.5,0.8,0.6,0.9\n"
+    "stem,4.5,0.2\nstem,4.8,0.8,chine\nstem,5,1.2\n";
+
+TEST(OffsetFile, ReadsLengthsKnucklesAndContours) {
+  const geometry::OffsetTable table = parse_offsets(yacht, "yacht.csv");
+  EXPECT_EQ(table.after_perpendicular, -4.5);
+  ASSERT_EQ(table.knuckles.size(), 1u);
+  EXPECT_EQ(table.knuckles[0].name, "chine");
+  EXPECT_EQ(table.knuckles[0].places(1, 0), 0.8);
+  EXPECT_EQ(table.stem.cols(), 3);
+  EXPECT_EQ(table.stem_knuckles, std::vector<int>{1});
+  EXPECT_FALSE(table.has_tangent_bottom);
+  EXPECT_EQ(table.baseline, 0.0);
+}
+
+void expect_equal(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  ASSERT_EQ(a.rows(), b.rows());
+  ASSERT_EQ(a.cols(), b.cols());
+  for (Eigen::Index i = 0; i < a.size(); ++i) {
+    const double x = a.reshaped()(i);
+    const double y = b.reshaped()(i);
+    EXPECT_TRUE(x == y || (std::isnan(x) && std::isnan(y))) << x << " " << y;
+  }
+}
+
+TEST(OffsetFile, WritesWhatItReads) {
+  for (const std::string& text : {cargo, yacht}) {
+    const geometry::OffsetTable table = parse_offsets(text, "given.csv");
+    const geometry::OffsetTable back = parse_offsets(offsets_text(table), "written.csv");
+    EXPECT_EQ(back.name, table.name);
+    EXPECT_EQ(back.stations, table.stations);
+    EXPECT_EQ(back.waterlines, table.waterlines);
+    EXPECT_EQ(back.length, table.length);
+    EXPECT_EQ(back.after_perpendicular, table.after_perpendicular);
+    EXPECT_EQ(back.has_tangent_bottom, table.has_tangent_bottom);
+    EXPECT_EQ(back.area_ratios, table.area_ratios);
+    EXPECT_EQ(back.stem_knuckles, table.stem_knuckles);
+    expect_equal(back.half_breadths, table.half_breadths);
+    expect_equal(back.keel, table.keel);
+    expect_equal(back.deck, table.deck);
+    expect_equal(back.stem, table.stem);
+    ASSERT_EQ(back.knuckles.size(), table.knuckles.size());
+    for (std::size_t k = 0; k < table.knuckles.size(); ++k)
+      expect_equal(back.knuckles[k].places, table.knuckles[k].places);
+  }
+}
+
+TEST(OffsetFile, ReadsTheSeries60Tables) {
+  const auto folder = std::filesystem::path(ISORIM_SOURCE_DIR) / "cases/hull";
+  const geometry::OffsetTable table = read_offsets(folder / "series60_cb060.csv");
+  EXPECT_EQ(table.stations.size(), 25u);
+  EXPECT_EQ(table.waterlines.size(), 7u);
+  // Station 14, 0.075 T: 0.701 of the largest, 0.866 of B / 2.
+  EXPECT_EQ(table.station_names[8], "14");
+  EXPECT_NEAR(table.half_breadths(0, 8), 0.5 * 0.701 * 0.866, 1e-15);
+}
+
+void expect_refused(std::string text, const std::string& from, const std::string& to, const std::string& fragment) {
+  const std::size_t place = text.find(from);
+  ASSERT_NE(place, std::string::npos) << from;
+  text.replace(place, from.size(), to);
+  try {
+    parse_offsets(text, "bad.csv");
+    ADD_FAILURE() << "not refused: " << fragment;
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(fragment));
+    EXPECT_THAT(error.what(), HasSubstr("bad.csv"));
+  }
+}
+
+TEST(OffsetFile, RefusesWithLineAndColumn) {
+  expect_refused(cargo, "10,0,0.5,", "10,0,0.x5,", "bad.csv:11: column 3 (1): found \"0.x5\"; expected a number");
+  expect_refused(cargo, "length,100", "lenght,100", "bad.csv:3: found the key \"lenght\"");
+  expect_refused(cargo, "beam,16\n", "", "found no key \"beam\" before the table");
+  expect_refused(cargo, "beam,16", "beam,-16", "the beam is -16; expected a positive number");
+  expect_refused(cargo, "10,aft", "10,back", "found stations 10, back");
+  expect_refused(cargo, "tangent,1", "tangens,1", "bad.csv:9: column 2: found \"tangens\"");
+  expect_refused(cargo, "5,1,1,1,1.4,1,1", "5,1,1,1,1.4,1", "bad.csv:12: found 6 cells; expected 7");
+  expect_refused(cargo, "max,0.7,1,0.95,,1,\n", "", "found no row \"max\"");
+  expect_refused(cargo, "10,0,0.5", "5,0,0.5", "station 5 is there twice");
+  expect_refused(cargo, "deck height", "deck half-breadth", "is there twice");
+  expect_refused(yacht, "-4.5,0,0.3,-,0.5,1", "-4.5,0,0.3,-,0.5,-1",
+                 "the half-breadth at station -4.5, height 1.2 is -1");
+  expect_refused(yacht, "0.8,chine", "0.8,chain", "column 4: found the knuckle \"chain\"");
+  expect_refused(yacht, "0.8,chine", "0.8", "the knuckle \"chine\" has no end on the stem");
+  expect_refused(yacht, "stem,5,1.2", "stem,3,1.2", "expected it ahead of all stations");
+  expect_refused(yacht, "stem,5,1.2", "stern", "found \"stern\" with 1 cells");
+  expect_refused(yacht, "chine half-breadth", "chine area", "column 7: found \"chine area\"");
+}
+
+}  // namespace
+}  // namespace isorim::io
