@@ -32,7 +32,8 @@ Json hull_json(const HullFacts& facts, const std::vector<Quantity>& quantities) 
   json["station_sign_changes"] = facts.fairness.station_sign_changes;
   json["waterline_sign_changes"] = facts.fairness.waterline_sign_changes;
   json["control_points"] = Json::array();
-  for (const geometry::NurbsSurface<3>& band : facts.port) json["control_points"].push_back({band.count_u(), band.count_v()});
+  for (const geometry::NurbsSurface<3>& band : facts.port)
+    json["control_points"].push_back({band.count_u(), band.count_v()});
   return json;
 }
 

@@ -86,7 +86,8 @@ int exit_status(RunStatus status) {
 }
 
 const Quantity* Report::find(std::string_view name) const {
-  for (const std::vector<Quantity>* list : {&properties, &integrals, &fit_quantities, &propeller_quantities, &hull_quantities}) {
+  for (const std::vector<Quantity>* list :
+       {&properties, &integrals, &fit_quantities, &propeller_quantities, &hull_quantities}) {
     for (const Quantity& quantity : *list) {
       if (quantity.name == name) return &quantity;
     }

@@ -1,11 +1,11 @@
 #include "io/hull/hull_library.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "geometry/errors.h"
 #include "geometry/hull/hull.h"
