@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "io/case/analysis_keys.h"
-#include "io/case/file_shape.h"
-#include "io/case/lines_plan_keys.h"
 #include "io/case/drawing_keys.h"
+#include "io/case/file_shape.h"
 #include "io/case/hydrostatics_keys.h"
+#include "io/case/lines_plan_keys.h"
 #include "io/case/plane_section_keys.h"
 #include "io/case/schema.h"
 #include "io/case/shape_builder.h"
