@@ -304,8 +304,7 @@ TEST_F(Program, HelpAndVersion) {
   EXPECT_THAT(run({"help", "run"}).out, HasSubstr("--set"));
   EXPECT_THAT(run({"help", "sweep"}).out, AllOf(HasSubstr("--shard"), HasSubstr("latin_hypercube")));
   EXPECT_THAT(run({"help", "sweep", "--markdown"}).out, AllOf(HasSubstr("## rows"), HasSubstr("| `csv` |")));
-  EXPECT_THAT(run({"help", "case"}).out,
-              AllOf(HasSubstr("properties"), HasSubstr("ellipsoid"), HasSubstr("hull")));
+  EXPECT_THAT(run({"help", "case"}).out, AllOf(HasSubstr("properties"), HasSubstr("ellipsoid"), HasSubstr("hull")));
   EXPECT_THAT(run({"help", "case", "torus"}).out, AllOf(HasSubstr("major_radius"), HasSubstr("required")));
   const ProgramResult wrong = run({"help", "case", "tourus"});
   EXPECT_EQ(wrong.status, 2);
