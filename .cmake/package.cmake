@@ -1,5 +1,6 @@
 # Debian packages by `cpack` in the build folder: `isorim` with the program, its manual and cases, `isorim-dev` with the
-# libraries. What the program depends on is found by dpkg-shlibdeps, what the libraries do is what built them.
+# libraries, `python3-isorim` with the Python package where it is built. What programs depend on is found by
+# dpkg-shlibdeps, what the libraries do is what built them.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME isorim)
 set(CPACK_PACKAGE_CONTACT "The developers of isorim <developers@isorim.invalid>")
@@ -7,6 +8,9 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL program development)
+if(ISORIM_BUILD_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -25,4 +29,10 @@ list(JOIN isorim_development_depends ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPEN
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME isorim-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The libraries of isorim with their headers, for find_package(isorim).")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-isorim)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python package isorim: boundaries, integrals and solutions as numpy arrays.")
 include(CPack)

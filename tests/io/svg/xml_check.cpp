@@ -37,8 +37,8 @@ class Parser {
   }
   std::string name() {
     const std::size_t start = at_;
-    while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) != 0 || text_[at_] == '-' ||
-                                   text_[at_] == ':')) {
+    while (at_ < text_.size() &&
+           (std::isalnum(static_cast<unsigned char>(text_[at_])) != 0 || text_[at_] == '-' || text_[at_] == ':')) {
       ++at_;
     }
     if (start == at_) fail("expected a name");
