@@ -182,19 +182,55 @@ Points<3> row_of(const std::vector<Points<3>>& nets, Eigen::Index function) {
   return row;
 }
 
+/// Inner coefficients beyond the centre plane of a row whose points do not lie beyond it.
+std::vector<int> beyond_centre_plane(const Eigen::VectorXd& coefficients, const Eigen::VectorXd& values) {
+  std::vector<int> beyond;
+  if (values.minCoeff() < 0.0) return beyond;
+  const double rounding = 1e-13 * values.maxCoeff();
+  for (Eigen::Index i = 1; i + 1 < coefficients.size(); ++i)
+    if (coefficients(i) < -rounding) beyond.push_back(static_cast<int>(i));
+  return beyond;
+}
+
+/// The points of a row; its half-breadths stay on their side of the centre plane where they can.
+Points<3> closed_row(const KnotVector& knots, const std::vector<double>& u, const Points<3>& row) {
+  Points<3> net = smoothest_net(knots, u, row, true, false);
+  const Eigen::VectorXd values = row.row(y_row).transpose();
+  const auto runs = constant_runs(values, true);
+  std::vector<int> zeros;
+  for (;;) {
+    const std::vector<int> beyond = beyond_centre_plane(net.row(y_row).transpose(), values);
+    if (beyond.empty()) return net;
+    zeros.insert(zeros.end(), beyond.begin(), beyond.end());
+    try {
+      net.row(y_row) = SmoothestSpline(knots, {u, runs, false, zeros}).coefficients(row.row(y_row));
+    } catch (const GeometryError&) {
+      // Too few functions are left for the points: the row goes beyond.
+      return net;
+    }
+  }
+}
+
+/// Plain interpolation of a row would go beyond the centre plane.
+bool dips(const KnotVector& knots, const std::vector<double>& u, const Points<3>& row) {
+  const Eigen::VectorXd y = SmoothestSpline(knots, {u}).coefficients(row.row(y_row)).transpose();
+  return !beyond_centre_plane(y, row.row(y_row).transpose()).empty();
+}
+
 /// All bands of a hull lie over the same knots in u.
 KnotVector knots_across(const std::vector<std::vector<Points<3>>>& bands, const std::vector<double>& u) {
-  bool needs_freedom = false;
+  const KnotVector plain = averaged_knots(degree_for(u.size()), u);
   for (const std::vector<Points<3>>& nets : bands) {
     for (Eigen::Index k = 0; k < nets.front().cols(); ++k) {
       const Points<3> row = row_of(nets, k);
       for (const Eigen::Index r : {y_row, z_row}) {
         const auto runs = constant_runs(row.row(r).transpose(), r == y_row);
-        needs_freedom = needs_freedom || asks_for_freedom(runs, row.cols());
+        if (asks_for_freedom(runs, row.cols())) return doubled_knots(full_degree, u);
       }
+      if (dips(plain, u, row)) return doubled_knots(full_degree, u);
     }
   }
-  return needs_freedom ? doubled_knots(full_degree, u) : averaged_knots(degree_for(u.size()), u);
+  return plain;
 }
 
 NurbsSurface<3> skinned(const std::vector<Points<3>>& nets, const KnotVector& along, const KnotVector& across,
@@ -202,7 +238,7 @@ NurbsSurface<3> skinned(const std::vector<Points<3>>& nets, const KnotVector& al
   const Eigen::Index width = across.basis_count();
   Points<3> net(3, width * along.basis_count());
   for (Eigen::Index k = 0; k < along.basis_count(); ++k)
-    net.middleCols(k * width, width) = smoothest_net(across, u, row_of(nets, k), true, false);
+    net.middleCols(k * width, width) = closed_row(across, u, row_of(nets, k));
   return NurbsSurface<3>::from_points(across, along, net);
 }
 

@@ -28,8 +28,9 @@ struct HullSurfaceOptions {
 /// All points of the sections lie on it to rounding. Neighbouring bands have the knuckle in common bit for bit, control
 /// point by control point. Parts that the table has as flat are exactly flat: where three or more successive points
 /// of a station, or stations of a row of control points, have one half-breadth, the surface keeps it; at the ends of
-/// the hull, the keel and the deck two half-breadths of 0 do. What the points leave open is as smooth as possible
-/// (SmoothestSpline), first along the sections, then across. A biquadratic y(x, z) is reproduced.
+/// the hull, the keel and the deck two half-breadths of 0 do. Along the ship the surface does not go beyond the centre
+/// plane where points come near it: control points that would are put on it. What the points leave open is as smooth as
+/// possible (SmoothestSpline), first along the sections, then across. A biquadratic y(x, z) is reproduced.
 ///
 /// Throws GeometryError for fewer than two sections, sections whose mean x do not rise, points that coincide.
 std::vector<NurbsSurface<3>> hull_surface(std::span<const HullSection> sections,

@@ -101,7 +101,7 @@ SmoothestSpline::SmoothestSpline(const KnotVector& knots, Conditions conditions)
   const std::vector<double>& t = conditions_.parameters;
   const int data = static_cast<int>(t.size());
   const int functions = knots.basis_count();
-  fixed_by_.assign(static_cast<std::size_t>(functions), -1);
+  fixed_by_.assign(static_cast<std::size_t>(functions), not_fixed);
   std::vector<bool> in_run(t.size(), false);
   for (const ConstantRun& run : conditions_.runs) {
     const auto [first, last] =
@@ -109,19 +109,26 @@ SmoothestSpline::SmoothestSpline(const KnotVector& knots, Conditions conditions)
     std::fill(fixed_by_.begin() + first, fixed_by_.begin() + last + 1, run.first);
     std::fill(in_run.begin() + run.first, in_run.begin() + run.last + 1, true);
   }
+  for (const int function : conditions_.zeros) {
+    if (function <= 0 || function + 1 >= functions)
+      throw GeometryError(
+          fmt::format("smoothest spline: function {} cannot be 0; expected an inner one of {}", function, functions));
+    if (fixed_by_[static_cast<std::size_t>(function)] == not_fixed)
+      fixed_by_[static_cast<std::size_t>(function)] = zero;
+  }
   fixed_by_.front() = std::max(fixed_by_.front(), 0);
-  if (fixed_by_.back() < 0) fixed_by_.back() = data - 1;
+  if (fixed_by_.back() == not_fixed) fixed_by_.back() = data - 1;
   in_run.front() = true;
   in_run.back() = true;
   for (int i = 0; i < functions; ++i) {
-    if (fixed_by_[static_cast<std::size_t>(i)] < 0) free_.push_back(i);
+    if (fixed_by_[static_cast<std::size_t>(i)] == not_fixed) free_.push_back(i);
   }
   for (int k = 0; k < data; ++k) {
     if (!in_run[static_cast<std::size_t>(k)]) met_.push_back(k);
   }
 
   const Eigen::MatrixXd collocation = collocation_matrix(knots, t);
-  const bool has_level_row = conditions_.is_level_at_start && fixed_by_[1] < 0;
+  const bool has_level_row = conditions_.is_level_at_start && fixed_by_[1] == not_fixed;
   const auto met = static_cast<Eigen::Index>(met_.size());
   conditions_matrix_ = Eigen::MatrixXd::Zero(met + (has_level_row ? 1 : 0), functions);
   for (Eigen::Index k = 0; k < met; ++k) conditions_matrix_.row(k) = collocation.row(met_[static_cast<std::size_t>(k)]);

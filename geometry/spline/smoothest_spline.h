@@ -30,6 +30,8 @@ class SmoothestSpline {
     std::vector<ConstantRun> runs = {};
     /// The first derivative vanishes at the first parameter.
     bool is_level_at_start = false;
+    /// Functions whose coefficients are to be 0, neither the first nor the last one.
+    std::vector<int> zeros = {};
   };
 
   /// Throws GeometryError if the counts contradict each other or the knots leave too few functions to meet the
@@ -41,8 +43,10 @@ class SmoothestSpline {
 
  private:
   Conditions conditions_;
-  /// Of each function, the datum whose value its coefficient is, or -1.
+  /// Of each function, the datum whose value its coefficient is, or one of the two below.
   std::vector<int> fixed_by_;
+  static constexpr int not_fixed = -1;
+  static constexpr int zero = -2;
   std::vector<int> free_;
   /// Data that the free functions have to meet.
   std::vector<int> met_;

@@ -1,5 +1,6 @@
 #include "geometry/hull/hull_surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -96,6 +97,25 @@ TEST(HullSurface, KeepsFlatPartsFlat) {
     ++on_side;
   }
   EXPECT_GT(on_side, 5);
+}
+
+TEST(HullSurface, StaysOnItsSideNextToItsEnds) {
+  // A hollow run: the waterlines leave the end so slowly that a cubic through the offsets would cross over.
+  OffsetTable table = wigley_table(11, 6);
+  for (Eigen::Index j = 1; j < 6; ++j) {
+    table.half_breadths(j, 1) = 0.002;
+    table.half_breadths(j, 2) *= 0.6;
+  }
+  const std::vector<HullSection> sections = hull_sections(table);
+  const NurbsSurface<3> surface = hull_surface(sections).front();
+  const Interval domain = surface.knots_u().domain();
+  double lowest = 1.0;
+  for (int i = 0; i <= 400; ++i) {
+    for (int j = 0; j <= 40; ++j)
+      lowest = std::min(lowest, evaluate(surface, Point2(domain.first + domain.length() * i / 400, j / 40.0)).y());
+  }
+  EXPECT_GE(lowest, 0.0);
+  EXPECT_LT(largest_distance(sections, {surface}), 1e-14);
 }
 
 TEST(HullSurface, IsCurvatureContinuousWithinABand) {

@@ -75,6 +75,18 @@ TEST(SmoothestSpline, IsLevelAtItsStartIfAsked) {
   for (int k = 0; k < 6; ++k) EXPECT_NEAR(at(knots, found, places[std::size_t(k)]), values(0, k), 1e-14);
 }
 
+TEST(SmoothestSpline, PutsCoefficientsToZero) {
+  const KnotVector knots = doubled_knots(3, places);
+  Eigen::MatrixXd values(1, 6);
+  values << 0.0, 0.1, 2.0, 3.0, 4.0, 5.0;
+  EXPECT_LT(SmoothestSpline(knots, {places}).coefficients(values)(0, 1), 0.0);
+  const Eigen::MatrixXd found = SmoothestSpline(knots, {places, {}, false, {1, 2}}).coefficients(values);
+  EXPECT_EQ(found(0, 1), 0.0);
+  EXPECT_EQ(found(0, 2), 0.0);
+  for (int k = 0; k < 6; ++k) EXPECT_NEAR(at(knots, found, places[std::size_t(k)]), values(0, k), 1e-14);
+  EXPECT_THROW(SmoothestSpline(knots, {places, {}, false, {0}}), GeometryError);
+}
+
 TEST(SmoothestSpline, RefusesWhatItCannotMeet) {
   const KnotVector few = KnotVector::bezier(3);
   EXPECT_THROW(SmoothestSpline(few, {{0.0, 0.1, 0.2, 0.5, 1.0}}), GeometryError);

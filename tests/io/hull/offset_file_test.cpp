@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/errors.h"
+#include "geometry/hull/hull_surface.h"
 
 namespace isorim::io {
 namespace {
@@ -105,6 +106,17 @@ TEST(OffsetFile, ReadsTheSeries60Tables) {
   // Station 14, 0.075 T: 0.701 of the largest, 0.866 of B / 2.
   EXPECT_EQ(table.station_names[8], "14");
   EXPECT_NEAR(table.half_breadths(0, 8), 0.5 * 0.701 * 0.866, 1e-15);
+}
+
+TEST(OffsetFile, HullsOfSeries60StayOnTheirSide) {
+  for (const char* file : {"series60_cb060.csv", "series60_cb080.csv"}) {
+    const geometry::OffsetTable table = read_offsets(std::filesystem::path(ISORIM_SOURCE_DIR) / "cases/hull" / file);
+    const geometry::NurbsSurface<3> surface = hull_surface(hull_sections(table)).front();
+    for (int i = 0; i <= 800; ++i) {
+      for (int j = 0; j <= 100; ++j)
+        EXPECT_GE(evaluate(surface, geometry::Point2(table.length * i / 800, j / 100.0)).y(), 0.0);
+    }
+  }
 }
 
 void expect_refused(std::string text, const std::string& from, const std::string& to, const std::string& fragment) {
