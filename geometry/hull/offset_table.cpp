@@ -255,10 +255,10 @@ std::vector<HullSection> hull_sections(const OffsetTable& table) {
 
 OffsetTable scaled(const OffsetTable& table, const Vector3& factors) {
   OffsetTable result = table;
-  const auto along = [&](double x) {
-    return table.after_perpendicular + factors.x() * (x - table.after_perpendicular);
-  };
-  const auto up = [&](double z) { return table.baseline + factors.z() * (z - table.baseline); };
+  const auto along = [&](double x) { return factors.x() * x; };
+  const auto up = [&](double z) { return factors.z() * z; };
+  result.after_perpendicular = along(table.after_perpendicular);
+  result.baseline = up(table.baseline);
   result.length *= factors.x();
   result.beam *= factors.y();
   result.draught *= factors.z();

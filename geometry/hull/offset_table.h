@@ -84,7 +84,7 @@ struct HullSection {
 /// that the sections meet in different orders, and sections between the ends without thickness.
 std::vector<HullSection> hull_sections(const OffsetTable& table);
 
-/// Factors along x (about the after perpendicular), y and z (about the baseline).
+/// All coordinates times the factors, about the origin.
 OffsetTable scaled(const OffsetTable& table, const Vector3& factors);
 
 }  // namespace isorim::geometry

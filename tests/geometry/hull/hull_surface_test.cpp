@@ -214,6 +214,25 @@ void expect_refused(const OffsetTable& table, const std::string& fragment) {
   }
 }
 
+TEST(HullSurface, OfAScaledTableIsTheScaledSurface) {
+  const Vector3 factors(2.0, 0.5, 4.0);
+  const OffsetTable table = chined_form();
+  const OffsetTable larger = scaled(table, factors);
+  EXPECT_EQ(larger.length, 20.0);
+  EXPECT_EQ(larger.beam, 0.5);
+  EXPECT_EQ(larger.draught, 2.5);
+  EXPECT_EQ(larger.after_perpendicular, -10.0);
+  const HullSurfaceOptions heights{SectionParameters::heights};
+  const std::vector<NurbsSurface<3>> before = hull_surface(hull_sections(table), heights);
+  const std::vector<NurbsSurface<3>> after = hull_surface(hull_sections(larger), heights);
+  for (std::size_t band = 0; band < 2; ++band) {
+    for (double u = -5.0; u <= 5.0; u += 0.7) {
+      const Point3 expected = factors.cwiseProduct(evaluate(before[band], Point2(u, 0.4)));
+      EXPECT_LT((evaluate(after[band], Point2(2.0 * u, 0.4)) - expected).norm(), 1e-13);
+    }
+  }
+}
+
 TEST(HullSurface, RefusesTablesThatContradictThemselves) {
   const OffsetTable sound = chined_form();
   OffsetTable table = sound;

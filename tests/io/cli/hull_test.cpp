@@ -34,6 +34,7 @@ TEST_F(Hull, WigleyIsExactAtAnyScale) {
   EXPECT_EQ(hull["length"], 8.0);
   EXPECT_EQ(hull["after_perpendicular"], -4.0);
   EXPECT_EQ(hull["curvature_sign_changes"], 0);
+  EXPECT_LT(hull["offset_distance"], 1e-14);
   EXPECT_TRUE(results()["geometry"]["closed"]);
 }
 
