@@ -121,7 +121,7 @@ void set_half_length(ElementShape<Dim>& shape) {
   for (int corner = 0; corner < (Dim == 2 ? 2 : 4); ++corner) {
     geometry::Point<Dim - 1> place;
     place[0] = corner % 2;
-    if constexpr (Dim == 3) place[1] = corner / 2;
+    if constexpr (Dim == 3) place[1] = corner < 2 ? 0.0 : 1.0;
     raise(element_jet<Dim>(shape.net, place, geometry::Point<Dim>::Zero()).first);
   }
 }

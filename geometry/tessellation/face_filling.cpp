@@ -207,8 +207,7 @@ void FilledFace::refine(double tolerance) {
         throw NumericalError("more than four million triangles; expected a larger tolerance");
     }
     std::ranges::sort(changed);
-    const auto repeated = std::ranges::unique(changed);
-    changed.erase(repeated.begin(), repeated.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     open = std::move(changed);
   }
 }

@@ -43,7 +43,7 @@ void fill_in_poles(LoopPolygon& polygon) {
     polygon.clear();
     return;
   }
-  std::ranges::rotate(polygon, known);
+  std::rotate(polygon.begin(), known, polygon.end());
   for (std::size_t i = 1; i < polygon.size(); ++i)
     if (polygon[i].vertex < 0) polygon[i].vertex = polygon[i - 1].vertex;
 }

@@ -216,7 +216,7 @@ std::string name_of_key(const std::string& key) {
     const std::size_t dot = key.rfind('.', end == 0 ? 0 : end - 1);
     const std::size_t begin = dot == std::string::npos ? 0 : dot + 1;
     const std::string part = key.substr(begin, end - begin);
-    name = name.empty() ? part : part + "_" + name;
+    name = name.empty() ? part : fmt::format("{}_{}", part, name);
     const bool is_index =
         !part.empty() && std::ranges::all_of(part, [](char c) { return std::isdigit(static_cast<unsigned char>(c)); });
     if (!is_index || begin == 0) return name;

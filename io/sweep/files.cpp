@@ -182,7 +182,8 @@ std::vector<svg::Series> plot_series(const SweepResults& results, const SweepPlo
       std::ranges::stable_sort(points[label], {}, [](const auto& point) { return point.first; });
       svg::Series& line = lines.emplace_back();
       const bool names_y = plot.y.items.size() > 1;
-      line.name = label.empty() ? (names_y ? y : "") : names_y ? y + ", " + label : label;
+      line.name = label;
+      if (names_y) line.name = label.empty() ? y : fmt::format("{}, {}", y, label);
       for (const auto& [at, value] : points[label]) {
         line.x.push_back(at);
         line.y.push_back(value);

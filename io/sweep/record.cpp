@@ -30,7 +30,7 @@ class Flattener {
     } else if (json.is_null()) {
       results_.emplace_back(name, std::nullopt);
     } else if (json.is_object()) {
-      for (const auto& [key, value] : json.items()) add(value, name.empty() ? key : name + "." + key);
+      for (const auto& [key, value] : json.items()) add(value, name.empty() ? key : fmt::format("{}.{}", name, key));
     } else if (json.is_array()) {
       add_list(json, name);
     }
@@ -38,7 +38,7 @@ class Flattener {
 
   /// Of a property or integral.
   void add_quantity(const Json& json, const std::string& name) {
-    for (const auto& [key, value] : json.items()) add(value, key == "value" ? name : name + "." + key);
+    for (const auto& [key, value] : json.items()) add(value, key == "value" ? name : fmt::format("{}.{}", name, key));
   }
 
  private:
