@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "solver/linear/column_products.h"
 
 namespace isorim::solver {
 
@@ -135,14 +136,15 @@ class CrossApproximation {
   }
 
   void update_row(Sample& row) {
-    row.values.noalias() -=
-        v_.columns(row.applied) * u_.columns(row.applied).middleRows(row.index * rows_, rows_).transpose();
+    add_product_with_transposed(-1.0, v_.columns(row.applied),
+                                u_.columns(row.applied).middleRows(row.index * rows_, rows_), row.values);
     row.applied = u_.count();
   }
 
   void update_column(Sample& column) {
-    column.values.noalias() -= u_.columns(column.applied) *
-                               v_.columns(column.applied).middleRows(column.index * columns_, columns_).transpose();
+    add_product_with_transposed(-1.0, u_.columns(column.applied),
+                                v_.columns(column.applied).middleRows(column.index * columns_, columns_),
+                                column.values);
     column.applied = u_.count();
   }
 
@@ -210,9 +212,11 @@ class CrossApproximation {
   double append(const Eigen::VectorXd& u, const Eigen::VectorXd& v) {
     const double square = u.squaredNorm() * v.squaredNorm();
     if (u_.count() > 0) {
-      const Eigen::VectorXd left = u_.columns().transpose() * u;
-      const Eigen::VectorXd right = v_.columns().transpose() * v;
-      squared_norm_ += 2.0 * left.dot(right);
+      MatrixXd left = MatrixXd::Zero(u_.count(), 1);
+      MatrixXd right = left;
+      add_transposed_product(1.0, u_.columns(), u, left);
+      add_transposed_product(1.0, v_.columns(), v, right);
+      squared_norm_ += 2.0 * left.col(0).dot(right.col(0));
     }
     squared_norm_ += square;
     u_.push_back(u);

@@ -6,6 +6,7 @@
 
 #include "geometry/errors.h"
 #include "quadrature/parallel.h"
+#include "solver/linear/column_products.h"
 
 namespace isorim::solver {
 
@@ -53,7 +54,7 @@ void add_dense_product(const HierarchicalMatrix& left, int a, const Hierarchical
     } else if (leaf.low_rank.rank() > 0) {
       MatrixXd transposed = MatrixXd::Zero(result.cols(), leaf.low_rank.rank());
       add_transposed_block_product(right, b, 1.0, leaf.low_rank.v, transposed);
-      result.noalias() += leaf.low_rank.u * transposed.transpose();
+      add_product_with_transposed(1.0, leaf.low_rank.u, transposed, result);
     }
     return;
   }
@@ -64,7 +65,7 @@ void add_dense_product(const HierarchicalMatrix& left, int a, const Hierarchical
     } else if (leaf.low_rank.rank() > 0) {
       MatrixXd columns = MatrixXd::Zero(result.rows(), leaf.low_rank.rank());
       add_block_product(left, a, 1.0, leaf.low_rank.u, columns);
-      result.noalias() += columns * leaf.low_rank.v.transpose();
+      add_product_with_transposed(1.0, columns, leaf.low_rank.v, result);
     }
     return;
   }
@@ -94,10 +95,11 @@ void add_block_product(const HierarchicalMatrix& matrix, int number, double fact
   if (is_leaf(matrix, number)) {
     const HierarchicalMatrix::Leaf& leaf = matrix.leaf(number);
     if (leaf.is_dense()) {
-      result.noalias() += factor * leaf.dense * x;
+      add_product(factor, leaf.dense, x, result);
     } else if (leaf.low_rank.rank() > 0) {
-      const MatrixXd inner = factor * (leaf.low_rank.v.transpose() * x);
-      result.noalias() += leaf.low_rank.u * inner;
+      MatrixXd inner = MatrixXd::Zero(leaf.low_rank.rank(), x.cols());
+      add_transposed_product(factor, leaf.low_rank.v, x, inner);
+      add_product(1.0, leaf.low_rank.u, inner, result);
     }
     return;
   }
@@ -113,10 +115,11 @@ void add_transposed_block_product(const HierarchicalMatrix& matrix, int number, 
   if (is_leaf(matrix, number)) {
     const HierarchicalMatrix::Leaf& leaf = matrix.leaf(number);
     if (leaf.is_dense()) {
-      result.noalias() += factor * leaf.dense.transpose() * x;
+      add_transposed_product(factor, leaf.dense, x, result);
     } else if (leaf.low_rank.rank() > 0) {
-      const MatrixXd inner = factor * (leaf.low_rank.u.transpose() * x);
-      result.noalias() += leaf.low_rank.v * inner;
+      MatrixXd inner = MatrixXd::Zero(leaf.low_rank.rank(), x.cols());
+      add_transposed_product(factor, leaf.low_rank.u, x, inner);
+      add_product(1.0, leaf.low_rank.v, inner, result);
     }
     return;
   }
@@ -232,7 +235,7 @@ LowRank PendingUpdate::collected() const {
 
 void PendingUpdate::apply_to(HierarchicalMatrix::Leaf& leaf, double factor) const {
   if (leaf.is_dense()) {
-    leaf.dense.noalias() += factor * sum_.u * sum_.v.transpose();
+    add_product_with_transposed(factor, sum_.u, sum_.v, leaf.dense);
     if (products_.empty()) return;
     MatrixXd sum = MatrixXd::Zero(rows_, columns_);
     for (const auto& [left, a, right, b] : products_) add_dense_product(*left, a, *right, b, sum);

@@ -9,6 +9,8 @@
 #include <Eigen/QR>
 
 #include "geometry/errors.h"
+#include "solver/linear/column_products.h"
+#include "solver/linear/column_qr.h"
 
 namespace isorim::solver {
 
@@ -88,31 +90,21 @@ MatrixXd dominant_right_vectors(const MatrixXd& matrix, const Accuracy& accuracy
   return qr.colsPermutation() * result;
 }
 
-/// The triangle of a QR factorisation, min(rows, columns) x columns.
-MatrixXd triangle_of(const Eigen::HouseholderQR<MatrixXd>& qr) {
-  const MatrixXd& packed = qr.matrixQR();
-  return packed.topRows(std::min(packed.rows(), packed.cols())).template triangularView<Eigen::Upper>();
-}
-
-/// q times the matrix, q the orthonormal factor of a QR factorisation.
-MatrixXd orthonormal_times(const Eigen::HouseholderQR<MatrixXd>& qr, const MatrixXd& matrix) {
-  MatrixXd result = MatrixXd::Zero(qr.rows(), matrix.cols());
-  result.topRows(matrix.rows()) = matrix;
-  result.applyOnTheLeft(qr.householderQ());
-  return result;
-}
-
 }  // namespace
 
 LowRank truncate(const LowRank& matrix, const Accuracy& accuracy) {
   if (matrix.rank() == 0) return matrix;
-  const Eigen::HouseholderQR<MatrixXd> left(matrix.u);
-  const Eigen::HouseholderQR<MatrixXd> right(matrix.v);
-  const MatrixXd right_triangle = triangle_of(right);
-  const MatrixXd core = triangle_of(left) * right_triangle.transpose();
+  const ColumnQr right(matrix.v);
+  const MatrixXd left_triangle = ColumnQr(matrix.u).triangle();
+  const MatrixXd right_triangle = right.triangle();
+  MatrixXd core = MatrixXd::Zero(left_triangle.rows(), right_triangle.rows());
+  add_product_with_transposed(1.0, left_triangle, right_triangle, core);
   const MatrixXd vectors = dominant_right_vectors(core, accuracy);
-  const MatrixXd mix = right_triangle.transpose() * vectors;
-  return {matrix.u * mix, orthonormal_times(right, vectors)};
+  MatrixXd mix = MatrixXd::Zero(matrix.rank(), vectors.cols());
+  add_transposed_product(1.0, right_triangle, vectors, mix);
+  MatrixXd u = MatrixXd::Zero(matrix.u.rows(), vectors.cols());
+  add_product(1.0, matrix.u, mix, u);
+  return {std::move(u), right.orthonormal_times(vectors)};
 }
 
 LowRank compress(const Eigen::Ref<const MatrixXd>& matrix, const Accuracy& accuracy) {
