@@ -278,14 +278,6 @@ void turn_seam_away(Frame& frame, const std::vector<CapEdge>& edges) {
   frame.axes.col(0) = first;
 }
 
-/// The place on a quarter circle of circle_curve() at an angle in [0, pi / 2], as a part of its span: the inverse of
-/// the rational quadratic with weights 1, cos(pi / 4), 1.
-double part_of_quarter(double angle) {
-  const double part = 0.5 + 0.5 * std::tan(0.5 * angle - 0.125 * pi) / std::tan(0.125 * pi);
-  if (part < 1e-14) return 0.0;
-  return part > 1.0 - 1e-14 ? 1.0 : part;
-}
-
 /// The edges in the parameters of the side, cut where its spans end.
 std::vector<NurbsCurve<2>> curves_on_side(const RoundSide& side, const std::vector<CapEdge>& edges, double size) {
   std::vector<NurbsCurve<2>> curves;
@@ -352,6 +344,21 @@ std::vector<Patch<3>> side_caps(const RoundSide& side, const std::vector<NurbsCu
 
 }  // namespace
 
+// The inverse of the rational quadratic with weights 1, cos(pi / 4), 1.
+double part_of_quarter(double angle) {
+  const double part = 0.5 + 0.5 * std::tan(0.5 * angle - 0.125 * pi) / std::tan(0.125 * pi);
+  if (part < 1e-14) return 0.0;
+  return part > 1.0 - 1e-14 ? 1.0 : part;
+}
+
+std::vector<TrimLoop> loops_on_side(const NurbsSurface<3>& side, const std::vector<NurbsCurve<2>>& curves,
+                                    const Vector2& scale, double size) {
+  const Border border = rectangle_border(side);
+  std::vector<TrimLoop> loops = close_along(border, curves, scale, ClipOptions{}.gap_tolerance * size, 1e-12 * size);
+  if (needs_border(loops)) loops.push_back(whole(border));
+  return loops;
+}
+
 std::vector<Patch<3>> sphere_caps(const SphereTool& tool, const std::vector<CapEdge>& edges, double size,
                                   const ClipOptions& options, const PointTest& is_inside) {
   const std::vector<CapEdge> seen = edges_seen_from_outside(edges, tool.keep);
@@ -413,11 +420,7 @@ std::vector<TrimLoop> loops_beside(const TrimmedSurface& cap, const NurbsSurface
   }
   const Point3 first = evaluate(side, Point2(turn.first, side.knots_v().domain().first));
   const Point3 opposite = evaluate(side, Point2(turn.middle(), side.knots_v().domain().first));
-  const Vector2 scale(1.0 / (pi * (opposite - first).norm()), 1.0);
-  const Border border = rectangle_border(side);
-  std::vector<TrimLoop> loops = close_along(border, curves, scale, ClipOptions{}.gap_tolerance * size, 1e-12 * size);
-  if (needs_border(loops)) loops.push_back(whole(border));
-  return loops;
+  return loops_on_side(side, curves, Vector2(1.0 / (pi * (opposite - first).norm()), 1.0), size);
 }
 
 std::vector<Patch<3>> cone_caps(const ConeTool& tool, const std::vector<CapEdge>& edges, double size,

@@ -37,6 +37,12 @@ std::vector<Patch<3>> sphere_caps(const SphereTool& tool, const std::vector<CapE
                                   const ClipOptions& options, const PointTest& is_inside);
 std::vector<Patch<3>> cylinder_caps(const CylinderTool& tool, const std::vector<CapEdge>& edges, double size,
                                     const ClipOptions& options);
+/// The place on a quarter of circle_curve() at an angle in [0, pi / 2] from its start, as a part of its span.
+double part_of_quarter(double angle);
+/// The loops of the part of a round surface (u round, from 0 to 1) that lies on the left of curves in its parameters,
+/// closed along the borders of its domain; `scale`: parameters per length, `size` as above.
+std::vector<TrimLoop> loops_on_side(const NurbsSurface<3>& side, const std::vector<NurbsCurve<2>>& curves,
+                                    const Vector2& scale, double size);
 /// What a cap on a cylinder leaves of it: the loops of the rest of `side`, the cap's surface over larger heights.
 /// `size` as above.
 std::vector<TrimLoop> loops_beside(const TrimmedSurface& cap, const NurbsSurface<3>& side, double size);

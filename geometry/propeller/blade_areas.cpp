@@ -108,7 +108,8 @@ BladeAreas blade_areas(std::span<const BladeSection> sections, double hub_radius
                                     hub_radius, sections.back().station.radius));
   const int degree = std::min(3, static_cast<int>(sections.size()) - 1);
   BSpline laws = laws_across(sections, degree);
-  if (hub_radius < sections.front().station.radius) laws = extend(laws, {-longest_extension, 1.0});
+  // Also for a hub that ends just there: the spline meets the first section's radius to rounding only.
+  if (hub_radius <= sections.front().station.radius) laws = extend(laws, {-longest_extension, 1.0});
   const double first = parameter_of_radius(laws, hub_radius);
   std::vector<double> ends{first};
   for (const double knot : laws.knots.breakpoints())

@@ -2,13 +2,18 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "geometry/propeller/bracketed_root.h"
+#include "geometry/propeller/generatrix.h"
 #include "geometry/propeller/propeller.h"
+#include "geometry/propeller/radial_law.h"
 
 namespace isorim::geometry {
 namespace {
@@ -59,22 +64,18 @@ void check_profile(const std::vector<NurbsCurve<2>>& legs) {
   }
 }
 
-/// The longest straight piece parallel to the shaft.
-std::size_t cylinder_of(const std::vector<NurbsCurve<2>>& legs) {
-  std::size_t best = legs.size();
+/// The longest straight piece parallel to the shaft, if there is one.
+std::optional<std::size_t> cylinder_of(const std::vector<NurbsCurve<2>>& legs) {
+  std::optional<std::size_t> best;
   double longest = 0.0;
   for (std::size_t i = 0; i < legs.size(); ++i) {
     const Eigen::ArrayXd radii = legs[i].control_points().row(1).transpose().array();
     if (!(radii[0] > 0.0) || (radii - radii[0]).abs().maxCoeff() > 1e-12 * radii[0]) continue;
-    const double length = std::abs(end_of(legs[i]).x() - start_of(legs[i]).x());
+    const double length = end_of(legs[i]).x() - start_of(legs[i]).x();
     if (length <= longest) continue;
     longest = length;
     best = i;
   }
-  if (best == legs.size())
-    throw GeometryError(
-        "propeller hub: no piece of the profile is parallel to the shaft; expected one, on which the "
-        "blades stand");
   return best;
 }
 
@@ -84,17 +85,32 @@ Hub hub_by_profile(const std::vector<NurbsCurve<2>>& profile) {
   std::vector<NurbsCurve<2>> legs = legs_of(profile);
   check_profile(legs);
   if (start_of(legs.front()).x() > end_of(legs.back()).x()) legs = reversed(legs);
-  const std::size_t cylinder = cylinder_of(legs);
-  const Point2 aft = start_of(legs[cylinder]);
-  const Point2 forward = end_of(legs[cylinder]);
-  if (!(aft.x() < forward.x()))
-    throw GeometryError(fmt::format("propeller hub: the profile turns back on its cylinder, from X = {:.6g} to {:.6g}",
-                                    aft.x(), forward.x()));
-  const auto middle = legs.begin() + static_cast<std::ptrdiff_t>(cylinder);
-  Hub hub{aft.y(), aft.x(), forward.x()};
+  const Generatrix standing(legs);
+  Hub hub;
+  hub.profile = legs;
+  const std::optional<std::size_t> cylinder = cylinder_of(legs);
+  if (!cylinder) return hub;
+  const auto middle = legs.begin() + static_cast<std::ptrdiff_t>(*cylinder);
+  hub.radius = start_of(*middle).y();
+  hub.aft = start_of(*middle).x();
+  hub.forward = end_of(*middle).x();
   hub.beyond_aft = reversed({legs.begin(), middle});
   hub.beyond_forward = {middle + 1, legs.end()};
   return hub;
+}
+
+double radius_at_generator_line(const Hub& hub, std::span<const BladeSection> sections) {
+  if (hub.radius > 0.0 || hub.profile.empty()) return hub.radius;
+  std::vector<double> radii;
+  std::vector<double> rakes;
+  for (const BladeSection& section : sections) {
+    radii.push_back(section.station.radius);
+    rakes.push_back(section.station.rake);
+  }
+  const double tip = radii.back();
+  const RadialLaw rake("rake", std::move(radii), std::move(rakes));
+  const Generatrix profile(hub.profile);
+  return bracketed_root([&](double r) { return r - profile.radius(-rake(r)); }, {0.0, tip});
 }
 
 }  // namespace isorim::geometry

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -14,6 +15,9 @@
 #include "geometry/errors.h"
 #include "geometry/intersection/clip.h"
 #include "geometry/intersection/tool_caps.h"
+#include "geometry/propeller/blade_foot.h"
+#include "geometry/propeller/curved_hub.h"
+#include "geometry/propeller/generatrix.h"
 #include "geometry/shapes/checks.h"
 #include "geometry/shapes/sweeps.h"
 #include "geometry/shapes/transforms.h"
@@ -33,37 +37,39 @@ constexpr double overhang = 0.25;
 void check_propeller(const Propeller& screw) {
   if (screw.blades < 1) throw GeometryError(fmt::format("propeller: {} blades, at least 1 is needed", screw.blades));
   if (!screw.hub) return;
-  checks::positive("propeller hub", "radius", screw.hub->radius);
+  if (screw.hub->profile.empty()) checks::positive("propeller hub", "radius", screw.hub->radius);
   if (screw.hub->aft) checks::finite("propeller hub", "aft", *screw.hub->aft);
   if (screw.hub->forward) checks::finite("propeller hub", "forward", *screw.hub->forward);
 }
 
-/// Largest distance of the surface's inner edge from the shaft.
-double inner_radius(const NurbsSurface<3>& surface) {
+/// Largest distance of the surface's inner edge from the shaft, as a part of the hub's radius there.
+double inner_reach(const NurbsSurface<3>& surface, const std::function<double(double x)>& hub_radius) {
   const NurbsCurve<3> edge = isoparametric_curve(surface, Direction::u, surface.knots_v().domain().first);
   const Interval domain = edge.domain();
   double largest = 0.0;
   constexpr int samples = 200;
   for (int i = 0; i <= samples; ++i) {
     const Point3 point = evaluate(edge, std::lerp(domain.first, domain.last, static_cast<double>(i) / samples));
-    largest = std::max(largest, std::hypot(point.y(), point.z()));
+    largest = std::max(largest, std::hypot(point.y(), point.z()) / hub_radius(point.x()));
   }
   return largest;
 }
 
 /// The surface, continued inward until its inner edge lies inside the hub.
-NurbsSurface<3> into_hub(const NurbsSurface<3>& surface, double hub_radius) {
-  if (inner_radius(surface) <= reach * hub_radius) return surface;
+NurbsSurface<3> into_hub(const NurbsSurface<3>& surface, const std::function<double(double x)>& hub_radius) {
+  const double given = inner_reach(surface, hub_radius);
+  if (given <= reach) return surface;
   const Interval domain = surface.knots_v().domain();
   for (double part = 0.01; part <= longest_extension; part *= 1.25) {
     const NurbsSurface<3> extended =
         extend(surface, Direction::v, {domain.first - part * domain.length(), domain.last});
-    if (inner_radius(extended) <= reach * hub_radius) return extended;
+    if (inner_reach(extended, hub_radius) <= reach) return extended;
   }
+  const Point3 inner = evaluate(surface, {surface.knots_u().domain().first, domain.first});
   throw GeometryError(fmt::format(
       "propeller: the blades start at a radius of {:.6g}, too far outside the hub of radius {:.6g} to be continued "
       "into it; add a section farther in",
-      inner_radius(surface), hub_radius));
+      std::hypot(inner.y(), inner.z()), hub_radius(inner.x())));
 }
 
 std::string blade_patch_name(const std::string& part, int blade) {
@@ -89,16 +95,6 @@ struct HubParts {
   std::vector<Patch<3>> beside_blades;
   Boundary<3> whole;
 };
-
-/// About the shaft.
-NurbsSurface<3> turned(const NurbsCurve<2>& profile) {
-  const HomogeneousPoints<2>& plane = profile.homogeneous();
-  HomogeneousPoints<3> net = HomogeneousPoints<3>::Zero(4, plane.cols());
-  net.row(0) = plane.row(0);
-  net.row(2) = plane.row(1);
-  net.row(3) = plane.row(2);
-  return revolve(NurbsCurve<3>(profile.knots(), net), {Point3::Zero(), Vector3::UnitX()}, 2.0 * std::numbers::pi);
-}
 
 /// What closes the hub beyond an edge of its cylinder.
 std::vector<Patch<3>> hub_end(const std::string& name, const NurbsCurve<3>& edge,
@@ -162,6 +158,16 @@ Joined joined(const Boundary<3>& blades, const Hub& hub) {
   return result;
 }
 
+/// The feet lie on the cylinder of a hub by its profile, with a little more than the margin that joined() keeps.
+bool stands_on_cylinder(const NurbsSurface<3>& blade, const Hub& hub) {
+  if (!(hub.radius > 0.0)) return false;
+  const Generatrix profile(hub.profile);
+  const NurbsSurface<3> reaching = into_hub(blade, [&](double x) { return profile.radius(x); });
+  const Interval feet = BladeFoot(reaching, profile).extent();
+  const double margin = 0.025 * feet.length() + 1.2e-3 * hub.radius;
+  return *hub.aft <= feet.first - margin && feet.last + margin <= *hub.forward;
+}
+
 Boundary<3> closed(const Boundary<3>& boundary) {
   OrientedBoundary<3> oriented = orient(boundary);
   require_closed(oriented);
@@ -173,11 +179,20 @@ Boundary<3> closed(const Boundary<3>& boundary) {
 PropellerModel propeller_model(const Propeller& screw) {
   check_propeller(screw);
   const BladeSkin skin = skin_blade(screw.sections, screw.surface);
-  const NurbsSurface<3> reaching = screw.hub ? into_hub(skin.surface, screw.hub->radius) : skin.surface;
-  const Boundary<3> blades = all_blades(close_blade(reaching, leading_edge_parameter(screw.sections)), screw.blades);
-  if (!screw.hub) return {closed(blades), skin.knots, std::nullopt};
-  const Joined parts = joined(blades, *screw.hub);
-  return {closed(parts.screw), skin.knots, closed(parts.hub)};
+  const double leading_edge = leading_edge_parameter(screw.sections);
+  if (!screw.hub) return {closed(all_blades(close_blade(skin.surface, leading_edge), screw.blades)), skin.knots, {}};
+  const Hub& hub = *screw.hub;
+  if (hub.profile.empty() || stands_on_cylinder(skin.surface, hub)) {
+    const NurbsSurface<3> reaching = into_hub(skin.surface, [&](double) { return hub.radius; });
+    const Joined parts = joined(all_blades(close_blade(reaching, leading_edge), screw.blades), hub);
+    return {closed(parts.screw), skin.knots, closed(parts.hub)};
+  }
+  const Generatrix profile(hub.profile);
+  const NurbsSurface<3> reaching = into_hub(skin.surface, [&](double x) { return profile.radius(x); });
+  HubJoint joint = joined_to_profile(close_blade(reaching, leading_edge), screw.blades, hub.profile);
+  Boundary<3> whole = all_blades(joint.blade, screw.blades);
+  for (Patch<3>& patch : joint.hub_beside_blades) whole.patches.push_back(std::move(patch));
+  return {closed(whole), skin.knots, closed(joint.hub), joint.feet};
 }
 
 Boundary<3> propeller(const Propeller& screw) {

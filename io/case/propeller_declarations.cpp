@@ -156,8 +156,8 @@ const Schema<PropellerKeys>& schema<PropellerKeys>() {
           .key("hub_profile", &PropellerKeys::hub_profile,
                {.text =
                     "Instead of hub_ratio and hub_ends: curves from end to end of the hub with x along the shaft and "
-                    "y the distance from it; the longest piece parallel to the shaft carries the blades. A profile "
-                    "that ends off the shaft is closed by a plane."})
+                    "y the distance from it. The blades may stand on any part along which x rises. A profile that ends "
+                    "off the shaft is closed by a plane."})
           .choice("hand", &PropellerKeys::hand, {{"right", Hand::right}, {"left", Hand::left}},
                   {.text = "Seen from astern, a right-handed screw turns clockwise when the ship goes ahead."})
           .choice("uniformisation", &PropellerKeys::uniformisation,

@@ -71,6 +71,12 @@ std::string remark_on(const MouldSection& section, Interval body) {
   return "";
 }
 
+std::optional<Interval> root_of(const MouldBody& body) {
+  if (body.root) return body.root;
+  if (!body.blade || !body.hub_radius) return std::nullopt;
+  return geometry::root_extent(body.boundary.patches[static_cast<std::size_t>(*body.blade)].shape, *body.hub_radius);
+}
+
 void add_lines(const MouldBody& body, const std::optional<Interval>& root, MouldSection& section) {
   if (body.blade && section.has_area)
     section.parting = geometry::parting_line(*section.measured.section, body.boundary, *body.blade, body.sag);
@@ -117,10 +123,7 @@ MouldStack cut_moulds(const MouldBody& body, const MouldKeys& keys, double milli
   const solver::PlaneSectionOptions options{
       .tolerance = 1e-9, .fit_tolerance = 1e-7, .threads = threads, .progress = progress};
   std::vector<solver::MeasuredSection> measured = measure_sections(cutter, planes, options);
-  const auto root =
-      body.blade && body.hub_radius
-          ? geometry::root_extent(body.boundary.patches[static_cast<std::size_t>(*body.blade)].shape, *body.hub_radius)
-          : std::nullopt;
+  const std::optional<Interval> root = root_of(body);
   std::size_t next = 0;
   for (const double height : heights) {
     MouldSection section;

@@ -19,8 +19,10 @@ struct MouldBody {
   geometry::Boundary<3> boundary;
   /// Of a propeller: the patch that has the blade's surface.
   std::optional<int> blade;
-  /// Of the hub that the blade stands on.
+  /// Of the hub that the blade stands on; of one by its profile the largest where the blade stands.
   std::optional<double> hub_radius;
+  /// X of the blade's root; if absent, that of its edges at the hub's radius.
+  std::optional<geometry::Interval> root = std::nullopt;
   /// Between lines of the section and the sampled points that they are drawn from.
   double sag = 1e-4;
 };

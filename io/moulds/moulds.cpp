@@ -27,7 +27,10 @@ void take_blade(const PropellerFacts& facts, double millimetres, MouldBody& body
   std::erase_if(body.boundary.patches, [](const auto& patch) { return !belongs_to_blade(patch.name); });
   for (std::size_t i = 0; i < body.boundary.patches.size(); ++i)
     if (body.boundary.patches[i].name == blade_name) body.blade = static_cast<int>(i);
-  if (facts.screw.hub) body.hub_radius = facts.screw.hub->radius * millimetres;
+  if (!facts.screw.hub) return;
+  body.hub_radius = (facts.feet ? facts.feet->largest_radius : facts.screw.hub->radius) * millimetres;
+  if (facts.feet)
+    body.root = geometry::Interval{facts.feet->extent.first * millimetres, facts.feet->extent.last * millimetres};
 }
 
 drawing::Sheet overlay_sheet(const MouldStack& stack, const std::string& title) {

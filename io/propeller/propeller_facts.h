@@ -21,6 +21,8 @@ struct PropellerFacts {
   /// line meets it; without a hub that of the first section.
   geometry::BladeAreas area_ratios;
   double hub_radius = 0.0;
+  /// If the blades stand on the hub's profile and not on a cylinder.
+  std::optional<geometry::ProfileFeet> feet;
   /// The hub alone.
   std::optional<geometry::Boundary<3>> hub;
   /// The whole screw, if the shape of the case is another: moved or cut.

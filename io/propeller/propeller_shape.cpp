@@ -54,7 +54,8 @@ PropellerFacts facts_of(const PropellerKeys& keys) {
   facts.screw.surface.edits = blade_edits(keys, blade.sections);
   facts.screw.sections = std::move(blade.sections);
   facts.screw.hub = hub(keys);
-  facts.hub_radius = facts.screw.hub ? facts.screw.hub->radius : facts.screw.sections.front().station.radius;
+  facts.hub_radius = facts.screw.hub ? radius_at_generator_line(*facts.screw.hub, facts.screw.sections)
+                                     : facts.screw.sections.front().station.radius;
   return facts;
 }
 
@@ -67,6 +68,7 @@ PropellerShape build_propeller_shape(const PropellerKeys& keys) {
     facts = facts_of(keys);
     geometry::PropellerModel model = geometry::propeller_model(facts.screw);
     facts.knots = model.knots;
+    facts.feet = model.feet;
     facts.hub = std::move(model.hub);
     facts.area_ratios = geometry::blade_areas(facts.screw.sections, facts.hub_radius)
                             .scaled(keys.blades / geometry::disc_area(keys.diameter));

@@ -115,6 +115,18 @@ TEST(BladeAreas, OfTheSeriesComeBackOutsideTheirHub) {
   EXPECT_NEAR(recovered(series_blade(BladeSeries::kaplan, 4), 0.2), 0.970, 1e-2);
 }
 
+// To the last bit the splines of the laws meet a first section at the hub's radius or lie beside it.
+TEST(BladeAreas, OfABladeThatBeginsOnTheHubAreComputed) {
+  for (const double area : {0.55, 0.6, 0.65, 0.7, 0.75}) {
+    for (const double pitch : {0.5, 0.6, 0.9, 1.2, 1.8}) {
+      SeriesBlade blade = series_blade(BladeSeries::kaplan, 4);
+      blade.area_ratio = area;
+      blade.pitch_ratio = RadialLaw(pitch);
+      EXPECT_NEAR(recovered(blade, 0.2), 0.9706, 1e-4);
+    }
+  }
+}
+
 // Taylor's empirical relation between projected and expanded area, Ap / Ae = 1.067 - 0.229 P / D.
 TEST(BladeAreas, ProjectedAreaFollowsTaylorsRelation) {
   for (const double pitch : {0.7, 0.9, 1.1}) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/errors.h"
+#include "geometry/propeller/blade_areas.h"
 #include "geometry/propeller/series.h"
 #include "tests/geometry/refusals.h"
 
@@ -147,11 +148,38 @@ TEST(HubByProfile, RefusesProfilesOfNoHub) {
     return refusal([&] { hub_by_profile(profile); });
   };
   EXPECT_THAT(refused([](auto& p) { p.clear(); }), HasSubstr("no curves"));
-  EXPECT_THAT(refused([](auto& p) { p.pop_back(); }), HasSubstr("no piece of the profile is parallel"));
+  EXPECT_THAT(refused([](auto& p) {
+                Points<2> disc(2, 2);
+                disc << 10.0, 10.0, 0.0, 50.0;
+                p = {NurbsCurve<2>::from_points(KnotVector::bezier(1), disc)};
+              }),
+              HasSubstr("no piece of the profile runs along the shaft"));
   EXPECT_THAT(refused([](auto& p) { p[1] = reverse(p[1]); }), HasSubstr("a gap of 155"));
   AffineMap<2> mirrored;
   mirrored.linear(1, 1) = -1.0;
   EXPECT_THAT(refused([&](auto& p) { p[1] = transform(p[1], mirrored); }), HasSubstr("reaches the radius -50"));
+}
+
+// A cone of half angle atan 0.1 and a generator line that leans aft by 0.2: they meet where r = 60 + 0.1 (0.2 r).
+TEST(HubByProfile, KnowsItsRadiusAtTheGeneratorLine) {
+  Points<2> cone(2, 2);
+  cone << -100.0, 100.0, 70.0, 50.0;
+  Propeller screw = reference(BladeSeries::kaplan);
+  for (BladeSection& section : screw.sections) section.station.rake = 0.2 * section.station.radius;
+  const Hub hub = hub_by_profile({NurbsCurve<2>::from_points(KnotVector::bezier(1), cone)});
+  EXPECT_EQ(hub.radius, 0.0);
+  EXPECT_NEAR(radius_at_generator_line(hub, screw.sections), 60.0 / 0.98, 1e-12);
+  EXPECT_EQ(radius_at_generator_line(Hub{50.0}, screw.sections), 50.0);
+}
+
+/// A cone, a smooth spline or a cone and a cylinder with a corner where the blades stand; ends far enough.
+std::vector<NurbsCurve<2>> curved_profile(unsigned seed, double radius) {
+  Points<2> points(2, 4);
+  points << -180.0, -20.0, 25.0, 190.0, 1.15, 1.0, 0.97, 0.9;
+  points.row(1) *= radius;
+  if (seed % 3 == 0) return {NurbsCurve<2>::from_points(KnotVector::bezier(1), points(Eigen::all, {0, 3}))};
+  if (seed % 3 == 1) return {NurbsCurve<2>::from_points(KnotVector(2, {0, 0, 0, 1, 2, 2, 2}), points)};
+  return {NurbsCurve<2>::from_points(KnotVector(1, {0, 0, 1, 2, 3, 3}), points)};
 }
 
 /// Of all numbers of blades, both hands, both series, on hubs of many sizes.
@@ -191,6 +219,70 @@ TEST(Propeller, ClosesOrSaysWhyNot) {
     EXPECT_THAT(why, ::testing::AnyOf("closed", HasSubstr("cross"), HasSubstr("propeller"))) << seed;
   }
   EXPECT_GE(closed, 20);
+}
+
+/// In the range in which the series were tested, on the hubs that go with them, both hands, raked and skewed.
+Propeller screw_of_the_tested_range(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto between = [&](double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(random);
+  };
+  const bool is_ducted = seed % 2 != 0;
+  SeriesBlade blade;
+  blade.series = is_ducted ? BladeSeries::kaplan : BladeSeries::wageningen_b;
+  blade.diameter = 500.0;
+  blade.blades = 3 + static_cast<int>(seed / 2 % (is_ducted ? 3 : 5));
+  blade.area_ratio = is_ducted ? between(0.55, 0.75) : between(0.3, 1.05);
+  const double pitch = between(0.5, is_ducted ? 1.8 : 1.4);
+  blade.pitch_ratio =
+      RadialLaw("pitch", {0.2, 0.7, 1.0}, {pitch * between(0.8, 1.0), pitch, pitch * between(0.8, 1.0)});
+  blade.rake = RadialLaw("rake", {0.0, 1.0}, {0.0, between(-60.0, 100.0)});
+  blade.skew = RadialLaw("skew", {0.2, 0.6, 1.0}, {0.0, between(-0.1, 0.2), between(-0.2, 0.8)});
+  EXPECT_TRUE(outside_tested_range(blade).empty());
+  Propeller screw;
+  screw.sections = series_sections(blade);
+  screw.blades = blade.blades;
+  screw.surface.hand = seed % 3 == 0 ? Hand::left : Hand::right;
+  screw.hub = Hub{250.0 * between(1.0 / 6.0, 0.2)};
+  return screw;
+}
+
+TEST(Propeller, ClosesInTheTestedRangeOfTheSeries) {
+  for (unsigned seed = 100; seed < 124; ++seed) {
+    const Propeller screw = screw_of_the_tested_range(seed);
+    EXPECT_NO_THROW(propeller(screw)) << seed;
+    EXPECT_NO_THROW(blade_areas(screw.sections, screw.hub->radius)) << seed;
+  }
+}
+
+TEST(Propeller, ClosesOnCurvedHubsOrSaysWhyNot) {
+  int closed = 0;
+  constexpr unsigned count = 18;
+  for (unsigned seed = 200; seed < 200 + count; ++seed) {
+    Propeller screw = screw_of_the_tested_range(seed);
+    screw.hub = hub_by_profile(curved_profile(seed, 1.15 * screw.hub->radius));
+    const std::string why = refusal([&] {
+      EXPECT_TRUE(propeller_model(screw).feet) << seed;
+      throw GeometryError("closed");
+    });
+    if (why == "closed") ++closed;
+    EXPECT_THAT(why, ::testing::AnyOf("closed", HasSubstr("cross"), HasSubstr("propeller"))) << seed;
+  }
+  EXPECT_EQ(closed, count);
+}
+
+TEST(Propeller, RefusesProfilesThatDoNotFit) {
+  const auto refused = [](double from, double to, double radius) {
+    Points<2> cone(2, 2);
+    cone << from, to, radius, 0.8 * radius;
+    Propeller screw = reference(BladeSeries::kaplan);
+    screw.hub = hub_by_profile({NurbsCurve<2>::from_points(KnotVector::bezier(1), cone)});
+    return refusal([&] { propeller(screw); });
+  };
+  EXPECT_THAT(refused(-100.0, 20.0, 60.0),
+              HasSubstr("runs along the shaft from X = -100 to 20; the blades on it need"));
+  EXPECT_THAT(refused(-100.0, 100.0, 25.0), HasSubstr("too far outside the hub of radius"));
+  EXPECT_THAT(refused(-100.0, 100.0, 300.0), HasSubstr("does not stand on the hub"));
 }
 
 TEST(Propeller, RefusesHubsThatDoNotFit) {
