@@ -59,4 +59,12 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
   file.commit();
 }
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw InputError(fmt::format("{}: cannot make the folder: {}", folder.string(), error.message()));
+  }
+}
+
 }  // namespace isorim::io

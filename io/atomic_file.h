@@ -31,4 +31,7 @@ class AtomicFile {
 /// permission, disk full); then the target is as it was.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
+/// Makes a folder for results, with those that it stands in. Throws InputError with its path if it cannot.
+void make_folder(const std::filesystem::path& folder);
+
 }  // namespace isorim::io

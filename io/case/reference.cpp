@@ -120,20 +120,24 @@ std::string case_overview() {
   return text;
 }
 
-std::string case_topic(const std::string& name) {
-  std::string text;
+std::vector<const Description*> case_tables(const std::string& name) {
+  std::vector<const Description*> all = distinct_descriptions();
+  if (name.empty()) return all;
+  if (name == "geometry") return KeyType<GeometryKeys>::nested();
+  std::vector<const Description*> found;
+  std::ranges::copy_if(all, std::back_inserter(found), [&](const Description* table) { return table->name == name; });
+  if (!found.empty()) return found;
   std::vector<std::string> names;
+  for (const Description* description : all) names.push_back(description->name);
+  throw InputError(fmt::format("help case: found \"{}\"{}; expected a section or type: {}", name,
+                               did_you_mean(name, names), fmt::join(names, ", ")));
+}
+
+std::string case_topic(const std::string& name) {
   if (name == "geometry") return case_overview();
-  for (const Description* description : distinct_descriptions()) {
-    names.push_back(description->name);
-    if (description->name != name) continue;
-    if (!text.empty()) text += '\n';
-    text += topic_text(*description);
-  }
-  if (text.empty()) {
-    throw InputError(fmt::format("help case: found \"{}\"{}; expected a section or type: {}", name,
-                                 did_you_mean(name, names), fmt::join(names, ", ")));
-  }
+  std::string text;
+  for (const Description* description : case_tables(name))
+    text += (text.empty() ? "" : "\n") + topic_text(*description);
   return text;
 }
 
@@ -151,6 +155,10 @@ std::string case_reference_markdown() {
       "must be finite.\nThe type of a shape is told by its key `type`. Points have two coordinates in the plane and "
       "three in space.\n";
   return text + reference_markdown(schema<CaseKeys>().description());
+}
+
+std::vector<const Description*> described_tables(const Description& root) {
+  return distinct_descriptions(root);
 }
 
 std::string reference_text(const Description& root) {

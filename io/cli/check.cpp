@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/atomic_file.h"
 #include "io/cli/commands.h"
 #include "io/results/inspection.h"
 #include "io/results/pictures.h"
@@ -37,7 +38,7 @@ io::Inspection inspection_of(const io::CaseFile& file, const CheckArguments& arg
   inspection = io::inspect(file, *model, {.threads = arguments.threads, .progress = {}});
   const std::filesystem::path folder = arguments.output.value_or(std::filesystem::path("out") / file.name());
   if (io::has_free_edges(*model)) {
-    make_folder(folder);
+    io::make_folder(folder);
     io::write_free_edges_vtu(folder / "free_edges.vtu", *model);
     inspection.free_edges_file = (folder / "free_edges.vtu").string();
   }
@@ -51,7 +52,7 @@ int check_case(const CheckArguments& arguments, std::ostream& out, std::ostream&
       io::read_case_or_cad(arguments.case_file, arguments.overrides,
                            {.refused_faces = io::RefusedFaces::leave_out, .threads = arguments.threads});
   const io::Inspection inspection = inspection_of(file, arguments);
-  out << (arguments.format == CheckFormat::json ? io::inspection_json(inspection) : io::inspection_text(inspection));
+  out << (arguments.format == OutputFormat::json ? io::inspection_json(inspection) : io::inspection_text(inspection));
   if (!inspection.failure.empty()) print_message(err, inspection.failure);
   const std::size_t refused = file.cad ? file.cad->refused.size() : 0;
   if (refused > 0) {

@@ -11,12 +11,16 @@
 
 #include "io/case/case_file.h"
 #include "io/results/compute.h"
+#include "io/results/conversion.h"
 
 /// The commands of the program, apart from how they are spelled on the command line. Each returns its exit status and
 /// throws what ends it early.
 namespace isorim::cli {
 
 enum class Verbosity { normal, quiet };
+
+/// Of what goes to the standard output.
+enum class OutputFormat { text, json };
 
 struct RunArguments {
   /// A case or a CAD file.
@@ -27,8 +31,9 @@ struct RunArguments {
   /// 0: all.
   int threads = 0;
   Verbosity verbosity = Verbosity::normal;
+  OutputFormat format = OutputFormat::text;
 };
-/// Computes a case, prints the table and writes the files that it asks for.
+/// Computes a case, prints the table (or what results.json holds) and writes the files that it asks for.
 int run_case(const RunArguments& arguments, std::ostream& out, std::ostream& err);
 
 /// Computes a case that has been read since `start`, and writes its files if there is a folder for them.
@@ -42,8 +47,6 @@ enum class SweepAction { run, list, merge };
 
 /// What to do with a folder that holds the sweep already.
 enum class EarlierCases { refuse, resume, discard };
-
-enum class OutputFormat { text, json };
 
 struct SweepArguments {
   std::filesystem::path sweep_file;
@@ -66,13 +69,12 @@ int run_sweep(const SweepArguments& arguments, std::ostream& out, std::ostream& 
 struct VerifyArguments {
   /// A folder, or one case file; cases/verification if absent.
   std::optional<std::filesystem::path> where;
+  /// Where the table goes as JSON; "-": to the standard output, in the place of its text.
   std::optional<std::filesystem::path> json;
   int threads = 0;
 };
 /// Runs every case with [expect] below a folder and prints one table.
 int verify_cases(const VerifyArguments& arguments, std::ostream& out, std::ostream& err);
-
-enum class CheckFormat { text, json };
 
 struct CheckArguments {
   /// A case or a CAD file.
@@ -80,7 +82,7 @@ struct CheckArguments {
   /// For free edges; out/<name>/ if absent.
   std::optional<std::filesystem::path> output;
   std::vector<std::string> overrides;
-  CheckFormat format = CheckFormat::text;
+  OutputFormat format = OutputFormat::text;
   /// 0: all.
   int threads = 0;
 };
@@ -88,25 +90,18 @@ struct CheckArguments {
 /// boundaries are no failure; what makes no boundary at all is (exit status 2).
 int check_case(const CheckArguments& arguments, std::ostream& out, std::ostream& err);
 
-/// How faces go into a CAD file.
-enum class FaceForm {
-  /// As solids where shells are closed.
-  solids,
-  loose,
-};
-
 struct ConvertArguments {
   /// A case or a CAD file.
   std::filesystem::path input;
   /// Its extension says what it becomes.
   std::filesystem::path output;
   std::vector<std::string> overrides;
-  FaceForm faces = FaceForm::solids;
+  io::FaceForm faces = io::FaceForm::solids;
   /// Unit of the lengths of a case, which says nothing of it; mm if absent. A CAD file's are converted into it.
   std::optional<std::string> unit;
+  OutputFormat format = OutputFormat::text;
 };
-/// Writes the boundary of a case or CAD file in another format: IGES (.igs, .iges), exact cells for ParaView (.vtu), or
-/// a drawing of a region of the plane (.svg).
+/// Writes the boundary of a case or CAD file in another format; see io/results/conversion.h.
 int convert(const ConvertArguments& arguments, std::ostream& out, std::ostream& err);
 
 struct PictureArguments {
@@ -129,13 +124,14 @@ struct PictureArguments {
   std::string background = "white";
   /// 0: all.
   int threads = 0;
+  OutputFormat format = OutputFormat::text;
 };
 /// Draws a PNG without a display. A case is drawn as `run` writes it; an analysis is solved if the field that is shown
 /// is one of its solution.
 int draw_picture(const PictureArguments& arguments, std::ostream& out, std::ostream& err);
 
 /// The hulls of a library as a table.
-int list_hulls(const std::filesystem::path& library, std::ostream& out);
+int list_hulls(const std::filesystem::path& library, OutputFormat format, std::ostream& out);
 
 struct HullImportArguments {
   /// Made if it is not there.
@@ -145,6 +141,7 @@ struct HullImportArguments {
   /// The file's name without its extension if absent.
   std::optional<std::string> name;
   bool replaces = false;
+  OutputFormat format = OutputFormat::text;
 };
 /// Puts a table of offsets into a library.
 int import_hull(const HullImportArguments& arguments, std::ostream& out);
@@ -153,14 +150,12 @@ struct HullExportArguments {
   std::filesystem::path library;
   std::string name;
   std::filesystem::path file;
+  OutputFormat format = OutputFormat::text;
 };
 /// Writes a hull of a library as a table of offsets in CSV.
 int export_hull(const HullExportArguments& arguments, std::ostream& out);
 
-int remove_hull(const std::filesystem::path& library, const std::string& name);
-
-/// Makes a folder for results. Throws InputError with its path if it cannot.
-void make_folder(const std::filesystem::path& folder);
+int remove_hull(const std::filesystem::path& library, const std::string& name, OutputFormat format, std::ostream& out);
 
 /// Prints each line of a message as "isorim: line".
 void print_message(std::ostream& err, std::string_view message);

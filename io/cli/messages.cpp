@@ -19,14 +19,6 @@ double now() {
 
 }  // namespace
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw InputError(fmt::format("{}: cannot make the folder: {}", folder.string(), error.message()));
-  }
-}
-
 void print_message(std::ostream& err, std::string_view message) {
   while (!message.empty()) {
     const std::size_t end = std::min(message.find('\n'), message.size());

@@ -16,9 +16,11 @@
 #include "geometry/errors.h"
 #include "io/analysis/analysis.h"
 #include "io/analysis/solution_pictures.h"
+#include "io/atomic_file.h"
 #include "io/case/complaints.h"
 #include "io/cli/commands.h"
 #include "io/cli/interrupts.h"
+#include "io/cli/replies.h"
 #include "io/results/compute.h"
 #include "io/results/pictures.h"
 
@@ -46,7 +48,7 @@ class TemporaryFolder {
   /// An empty folder in it.
   path make_inner() {
     path inner = folder_ / std::to_string(++count_);
-    make_folder(inner);
+    io::make_folder(inner);
     return inner;
   }
 
@@ -179,7 +181,8 @@ int draw_picture(const PictureArguments& arguments, std::ostream& out, std::ostr
     for (path& file : write_input(input, arguments, folder)) inputs.push_back({std::move(file), input.file.string()});
   }
   picture::draw_picture(inputs, options, arguments.output);
-  out << fmt::format("{}\n", arguments.output.string());
+  out << (arguments.format == OutputFormat::json ? picture_json(arguments, options)
+                                                 : fmt::format("{}\n", arguments.output.string()));
   return 0;
 }
 

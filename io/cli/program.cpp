@@ -14,6 +14,7 @@
 #include "io/case/reference.h"
 #include "io/cli/commands.h"
 #include "io/cli/completion.h"
+#include "io/cli/replies.h"
 #include "io/results/report.h"
 #include "io/sweep/sweep_keys.h"
 
@@ -40,7 +41,6 @@ struct SweepFlags {
   bool restart = false;
   bool dry_run = false;
   bool merge = false;
-  bool json = false;
 };
 
 /// CLI11 keeps references to what it fills.
@@ -51,6 +51,7 @@ struct Arguments {
   SweepFlags sweep_flags;
   VerifyArguments verify;
   CheckArguments check;
+  /// Of whichever command.
   bool json = false;
   ConvertArguments convert;
   bool loose_faces = false;
@@ -70,13 +71,17 @@ void add_case_options(CLI::App& command, std::filesystem::path& file, std::vecto
   add_overrides(command, overrides);
 }
 
+void add_json(CLI::App& command, bool& json, const char* text) {
+  command.add_flag("--json", json, text);
+}
+
 void add_threads(CLI::App& command, int& threads) {
   command.add_option("-j,--threads", threads, "Number of threads; all if absent")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
 }
 
-void declare_picture(CLI::App& app, PictureArguments& arguments) {
+void declare_picture(CLI::App& app, PictureArguments& arguments, bool& json) {
   CLI::App& picture =
       *app.add_subcommand("picture", "Draws cases, CAD files and VTK files as a PNG, without a display");
   picture.add_option("IN", arguments.inputs, "Case files (.toml), CAD files, .vtu, .vtp, .vti; drawn together")
@@ -100,10 +105,11 @@ void declare_picture(CLI::App& app, PictureArguments& arguments) {
   picture.add_option("--lines", arguments.lines, "Borders of elements: elements or none")->type_name("LINES");
   picture.add_option("--background", arguments.background, "white, grey, black, #rrggbb or transparent")
       ->type_name("COLOUR");
+  add_json(picture, json, "Prints what was drawn as JSON");
   add_threads(picture, arguments.threads);
 }
 
-void declare_sweep(CLI::App& sweep, SweepArguments& arguments, SweepFlags& flags) {
+void declare_sweep(CLI::App& sweep, SweepArguments& arguments, SweepFlags& flags, bool& json) {
   sweep.add_option("SWEEP", arguments.sweep_file, "Sweep file (.toml); its keys stand below")->required();
   sweep.add_option("-o,--output", arguments.output, "Output folder; out/<sweep name> if absent")->type_name("DIR");
   sweep.add_option("-j,--processes", arguments.processes, "Cases at a time; as many as processors if absent")
@@ -119,14 +125,15 @@ void declare_sweep(CLI::App& sweep, SweepArguments& arguments, SweepFlags& flags
       ->excludes("--restart")
       ->excludes("--shard");
   sweep.add_flag("--dry-run", flags.dry_run, "Lists the cases")->excludes("--merge");
-  sweep.add_flag("--json", flags.json, "Prints the summary (or the list) as JSON");
+  add_json(sweep, json, "Prints the summary (or the list) as JSON");
 }
 
-void declare_hulls(CLI::App& app, HullsArguments& arguments) {
+void declare_hulls(CLI::App& app, HullsArguments& arguments, bool& json) {
   CLI::App& hulls = *app.add_subcommand("hulls", "Keeps tables of offsets of hulls in a library file (HDF5)");
   hulls.require_subcommand(1);
-  const auto add_library = [](CLI::App& command, std::filesystem::path& library) {
+  const auto add_library = [&json](CLI::App& command, std::filesystem::path& library) {
     command.add_option("LIBRARY", library, "The library file (.h5)")->required();
+    add_json(command, json, "Prints the hulls (or what was done) as JSON");
   };
   CLI::App& list = *hulls.add_subcommand("list", "Tells what hulls a library has");
   add_library(list, arguments.library);
@@ -144,11 +151,12 @@ void declare_hulls(CLI::App& app, HullsArguments& arguments) {
   remove.add_option("NAME", arguments.name, "Of the hull")->required();
 }
 
-int dispatch_hulls(const CLI::App& hulls, const HullsArguments& arguments, std::ostream& out) {
-  if (hulls.got_subcommand("list")) return list_hulls(arguments.library, out);
+int dispatch_hulls(const CLI::App& hulls, HullsArguments& arguments, OutputFormat format, std::ostream& out) {
+  arguments.import.format = arguments.exported.format = format;
+  if (hulls.got_subcommand("list")) return list_hulls(arguments.library, format, out);
   if (hulls.got_subcommand("import")) return import_hull(arguments.import, out);
   if (hulls.got_subcommand("export")) return export_hull(arguments.exported, out);
-  return remove_hull(arguments.library, arguments.name);
+  return remove_hull(arguments.library, arguments.name, format, out);
 }
 
 void declare(CLI::App& app, Arguments& arguments) {
@@ -160,13 +168,19 @@ void declare(CLI::App& app, Arguments& arguments) {
   run.add_option("-o,--output", arguments.run.output, "Output folder; out/<case name> if absent")->type_name("DIR");
   add_threads(run, arguments.run.threads);
   run.add_flag("-q,--quiet", arguments.quiet, "Prints no table");
+  add_json(run, arguments.json, "Prints what results.json holds");
 
   CLI::App& sweep = *app.add_subcommand("sweep", "Runs a case for many values of its keys");
-  declare_sweep(sweep, arguments.sweep, arguments.sweep_flags);
+  declare_sweep(sweep, arguments.sweep, arguments.sweep_flags, arguments.json);
 
   CLI::App& verify = *app.add_subcommand("verify", "Runs every case with [expect] below a folder, as one table");
   verify.add_option("DIR", arguments.verify.where, "Folder or case file; cases/verification if absent");
-  verify.add_option("--json", arguments.verify.json, "Writes the table as JSON")->type_name("FILE");
+  verify
+      .add_option("--json", arguments.verify.json,
+                  "Writes the table as JSON; without FILE, at the end of the line, prints it")
+      ->type_name("FILE")
+      ->expected(0, 1)
+      ->default_str("-");
   add_threads(verify, arguments.verify.threads);
 
   CLI::App& check =
@@ -174,7 +188,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   add_case_options(check, arguments.check.case_file, arguments.check.overrides);
   check.add_option("-o,--output", arguments.check.output, "Folder for free edges; out/<name> if absent")
       ->type_name("DIR");
-  check.add_flag("--json", arguments.json, "Prints everything as JSON");
+  add_json(check, arguments.json, "Prints everything as JSON");
   add_threads(check, arguments.check.threads);
 
   CLI::App& convert = *app.add_subcommand("convert", "Writes the boundary of a case or CAD file in another format");
@@ -191,14 +205,16 @@ void declare(CLI::App& app, Arguments& arguments) {
       .add_option("--unit", arguments.convert.unit,
                   "IGES: unit of the case's lengths, mm if absent; a CAD file's are converted")
       ->type_name("UNIT");
+  add_json(convert, arguments.json, "Prints what was written as JSON");
 
-  declare_picture(app, arguments.picture);
-  declare_hulls(app, arguments.hulls);
+  declare_picture(app, arguments.picture, arguments.json);
+  declare_hulls(app, arguments.hulls, arguments.json);
 
   CLI::App& help = *app.add_subcommand("help", "Explains a command (help run) or case files (help case [SECTION])");
   help.add_option("TOPIC", arguments.help.topic, "A command; or case, with a section or type")->expected(0, 2);
   help.add_flag("--markdown", arguments.help.markdown,
                 "Prints the reference of case files (or with sweep of sweep files) as Markdown");
+  add_json(help, arguments.json, "Prints commands with their options, or the tables and keys of files, as JSON");
   help.add_option("--completion", arguments.help.completion, "Prints a script that completes command lines: bash, zsh")
       ->type_name("SHELL")
       ->check(CLI::IsMember({"bash", "zsh"}));
@@ -219,13 +235,23 @@ void check_command(const CLI::App& app, const std::string& word, const std::stri
                                fmt::join(names, ", ")));
 }
 
-int print_help(const HelpArguments& arguments, std::ostream& out) {
+/// Commands; or the tables of case files, or of sweep files.
+std::string help_json(const CLI::App& app, const std::vector<std::string>& topic) {
+  if (topic.empty()) return commands_json(app, "");
+  if (topic.front() == "case") return tables_json(io::case_tables(topic.size() > 1 ? topic[1] : ""));
+  check_command(app, topic.front(), "topic");
+  return topic.front() == "sweep" ? tables_json(io::sweep_tables()) : commands_json(app, topic.front());
+}
+
+int print_help(const HelpArguments& arguments, OutputFormat format, std::ostream& out) {
   // Not the one that has parsed the command line: it would tell of the command help alone.
   CLI::App app(about, "isorim");
   Arguments unused;
   declare(app, unused);
   const bool is_sweep = !arguments.topic.empty() && arguments.topic.front() == "sweep";
-  if (arguments.markdown) {
+  if (format == OutputFormat::json) {
+    out << help_json(app, arguments.topic);
+  } else if (arguments.markdown) {
     out << (is_sweep ? io::sweep_reference_markdown() : io::case_reference_markdown());
   } else if (!arguments.completion.empty()) {
     const Shell shell = arguments.completion == "bash" ? Shell::bash : Shell::zsh;
@@ -248,31 +274,34 @@ int dispatch_sweep(SweepArguments& arguments, const SweepFlags& flags, std::ostr
   if (flags.dry_run) arguments.action = SweepAction::list;
   if (flags.resume) arguments.earlier = EarlierCases::resume;
   if (flags.restart) arguments.earlier = EarlierCases::discard;
-  if (flags.json) arguments.format = OutputFormat::json;
   return run_sweep(arguments, out, err);
 }
 
 int dispatch(CLI::App& app, Arguments& arguments, std::ostream& out, std::ostream& err) {
+  const OutputFormat format = arguments.json ? OutputFormat::json : OutputFormat::text;
+  arguments.run.format = arguments.sweep.format = arguments.check.format = format;
+  arguments.convert.format = arguments.picture.format = format;
   if (app.got_subcommand("run")) {
     arguments.run.verbosity = arguments.quiet ? Verbosity::quiet : Verbosity::normal;
     return run_case(arguments.run, out, err);
   }
   if (app.got_subcommand("sweep")) return dispatch_sweep(arguments.sweep, arguments.sweep_flags, out, err);
   if (app.got_subcommand("verify")) return verify_cases(arguments.verify, out, err);
-  if (app.got_subcommand("check")) {
-    arguments.check.format = arguments.json ? CheckFormat::json : CheckFormat::text;
-    return check_case(arguments.check, out, err);
-  }
+  if (app.got_subcommand("check")) return check_case(arguments.check, out, err);
   if (app.got_subcommand("convert")) {
-    arguments.convert.faces = arguments.loose_faces ? FaceForm::loose : FaceForm::solids;
+    arguments.convert.faces = arguments.loose_faces ? io::FaceForm::loose : io::FaceForm::solids;
     return convert(arguments.convert, out, err);
   }
   if (app.got_subcommand("picture")) return draw_picture(arguments.picture, out, err);
 
-  if (app.got_subcommand("hulls")) return dispatch_hulls(*app.get_subcommand("hulls"), arguments.hulls, out);
-  if (app.got_subcommand("help")) return print_help(arguments.help, out);
+  if (app.got_subcommand("hulls")) return dispatch_hulls(*app.get_subcommand("hulls"), arguments.hulls, format, out);
+  if (app.got_subcommand("help")) return print_help(arguments.help, format, out);
   err << app.help();
   return 2;
+}
+
+bool asks_for_json(const std::vector<std::string>& args) {
+  return std::ranges::find(args, "--json") != args.end();
 }
 
 int parse_and_dispatch(const std::vector<std::string>& args, std::ostream& out, std::ostream& err) {
@@ -288,6 +317,7 @@ int parse_and_dispatch(const std::vector<std::string>& args, std::ostream& out, 
   } catch (const CLI::ParseError& error) {
     print_message(err, error.what());
     print_message(err, "isorim help lists the commands, isorim help COMMAND its options");
+    if (asks_for_json(args)) out << failure_json(InputError(error.what()), 2);
     return 2;
   }
   return dispatch(app, arguments, out, err);
@@ -299,7 +329,9 @@ int run_program(const std::vector<std::string>& args, std::ostream& out, std::os
   try {
     return parse_and_dispatch(args, out, err);
   } catch (const std::exception& error) {
-    return report_failure(error, err);
+    const int status = report_failure(error, err);
+    if (asks_for_json(args)) out << failure_json(error, status);
+    return status;
   }
 }
 

@@ -1,25 +1,16 @@
 #include <chrono>
 #include <ostream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
-#include "io/analysis/solution_pictures.h"
 #include "io/cli/commands.h"
 #include "io/cli/interrupts.h"
-#include "io/fit/fit_pictures.h"
-#include "io/hull/lines_plan.h"
-#include "io/hydrostatics/hydrostatics_report.h"
+#include "io/results/case_files.h"
 #include "io/results/compute.h"
-#include "io/results/convergence.h"
-#include "io/results/drawings.h"
-#include "io/results/hdf5.h"
 #include "io/results/json.h"
-#include "io/results/pictures.h"
-#include "io/results/plane_sections.h"
 #include "io/results/table.h"
 
 namespace isorim::cli {
@@ -29,43 +20,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Of an analysis: fields on the boundary, probes and grids.
-void write_fields(const io::AnyModel& model, const io::Report& report, const std::filesystem::path& folder) {
-  io::write_solution_vtu(folder / "solution.vtu", model, *report.fields);
-  io::write_fields_vtu(folder / "fields.vtu", *report.fields, report.threads);
-  io::write_samples(folder, *report.analysis);
-}
-
-void write_outputs(const io::CaseFile& file, const io::AnyModel& model, const io::Convergence& study,
-                   io::Report& report, const std::filesystem::path& folder) {
-  const HeldInterrupts held;
-  const Clock::time_point start = Clock::now();
-  make_folder(folder);
-  const io::OutputKeys& output = file.keys.output;
-  if (output.vtk) io::write_boundary_vtu(folder / "boundary.vtu", model);
-  if (output.vtk && io::has_edges(model)) io::write_edges_vtu(folder / "edges.vtu", model);
-  if (output.vtk && report.fields) write_fields(model, report, folder);
-  if (output.stl) io::write_boundary_stl(folder / "boundary.stl", file, model);
-  if (output.svg) io::write_boundary_svg(folder / "boundary.svg", report.title, model);
-  if (output.svg) io::write_tmesh_svgs(folder, file.shape);
-  if (report.sections) io::write_sections(folder, *report.sections, output);
-  for (std::string& message : io::write_drawings(folder, file, model, report.threads))
-    report.warnings.push_back(std::move(message));
-  if (report.hydrostatics) io::write_hydrostatics(folder, *report.hydrostatics, output);
-  if (file.fit) io::write_fit_points(folder / "fit_points.csv", *file.fit);
-  if (file.fit && output.svg) io::write_fit_svg(folder / "fit.svg", report.title, *file.fit);
-  if (file.hull && file.keys.lines_plan) io::write_lines_plan(folder, *file.hull, *file.keys.lines_plan);
-  if (file.keys.convergence) {
-    io::write_convergence_csv(folder / "convergence.csv", study);
-    io::write_convergence_svg(folder / "convergence.svg", report.title, study);
-  }
-  report.timings.write = seconds_since(start);
-  if (output.hdf5) io::write_hdf5(folder / "results.h5", report, model);
-  report.timings.write = seconds_since(start);
-  // Last: whoever finds it finds the rest as well.
-  io::write_json(folder / "results.json", report);
 }
 
 }  // namespace
@@ -97,7 +51,10 @@ io::Report compute_and_write(const io::CaseFile& file, Clock::time_point start, 
   io::Report report = io::compute(file, model, options);
   const io::Convergence study = io::study_convergence(file, model, options);
   report.timings.read = read;
-  if (folder) write_outputs(file, model, study, report, *folder);
+  if (folder) {
+    const HeldInterrupts held;
+    io::write_case_files(*folder, file, model, study, report);
+  }
   return report;
 }
 
@@ -117,7 +74,9 @@ int run_case(const RunArguments& arguments, std::ostream& out, std::ostream& err
   for (const std::string& line : shortfalls(report)) {
     print_message(err, fmt::format("{}: {}", arguments.case_file.string(), line));
   }
-  if (arguments.verbosity == Verbosity::normal) {
+  if (arguments.format == OutputFormat::json) {
+    out << io::to_json(report);
+  } else if (arguments.verbosity == Verbosity::normal) {
     out << io::results_text(report) << fmt::format("  results in {}\n", folder.string());
   }
   return io::exit_status(report.status);

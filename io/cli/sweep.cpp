@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "geometry/errors.h"
+#include "io/atomic_file.h"
 #include "io/cli/commands.h"
 #include "io/cli/interrupts.h"
 #include "io/cli/sweep_case.h"
@@ -287,7 +288,7 @@ int run_sweep(const SweepArguments& arguments, std::ostream& out, std::ostream& 
     const int status = conclude(arguments, results, folder, {}, out, err);
     return results.missing().empty() ? status : 2;
   }
-  make_folder(folder);
+  io::make_folder(folder);
   io::SweepResults results{&plan, shard, {}};
   io::Journal journal = open_journal(folder, arguments, results);
   SweepRunner runner(arguments, folder, results, err);

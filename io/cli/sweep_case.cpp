@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "geometry/errors.h"
+#include "io/atomic_file.h"
 #include "io/case/case_file.h"
 #include "io/cli/commands.h"
 
@@ -56,7 +57,7 @@ void add_report(const io::Report& report, const SweepCaseOptions& options, io::C
 std::filesystem::path empty_folder(const std::filesystem::path& folder) {
   std::error_code ignored;
   std::filesystem::remove_all(folder, ignored);
-  make_folder(folder);
+  io::make_folder(folder);
   return folder;
 }
 

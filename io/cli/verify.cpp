@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/atomic_file.h"
 #include "io/cli/commands.h"
 #include "io/results/compute.h"
 #include "io/results/json.h"
@@ -97,8 +98,9 @@ int verify_cases(const VerifyArguments& arguments, std::ostream& out, std::ostre
       if (result) cases.push_back(std::move(*result));
     }
   }
-  out << io::verification_text(cases);
-  if (arguments.json) io::write_verification_json(*arguments.json, cases);
+  const bool is_printed = arguments.json && *arguments.json == "-";
+  out << (is_printed ? io::verification_json(cases) : io::verification_text(cases));
+  if (arguments.json && !is_printed) io::write_file(*arguments.json, io::verification_json(cases));
   return overall_exit_status(cases);
 }
 

@@ -1,5 +1,7 @@
 #include "io/python/case.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -11,14 +13,13 @@
 
 #include "geometry/errors.h"
 #include "io/analysis/analysis.h"
+#include "io/analysis/boundary_field.h"
 #include "io/analysis/solution_pictures.h"
-#include "io/iges/writer.h"
 #include "io/python/values.h"
-#include "io/results/hdf5.h"
+#include "io/results/case_files.h"
+#include "io/results/conversion.h"
 #include "io/results/inspection.h"
 #include "io/results/json.h"
-#include "io/results/pictures.h"
-#include "io/results/plane_sections.h"
 #include "solver/bem/evaluation.h"
 
 namespace isorim::python {
@@ -74,10 +75,14 @@ std::unique_ptr<Case> from_toml(const std::string& text, const std::filesystem::
   return from_tree(io::parse_toml(text, "case"), folder, overrides, threads);
 }
 
-/// Everything that the case asks for, as the text of results.json.
-std::string run(Case& self, int threads) {
-  const io::Report report = io::compute(self.file, self.model, run_options(threads));
+/// Everything that the case asks for, as the text of results.json; its files go into a folder if there is one.
+std::string run(Case& self, int threads, const std::optional<std::filesystem::path>& output) {
+  io::Report report = io::compute(self.file, self.model, run_options(threads));
   self.analysis = report.fields;
+  if (output) {
+    const io::Convergence study = io::study_convergence(self.file, self.model, run_options(threads));
+    io::write_case_files(*output, self.file, self.model, study, report);
+  }
   return io::to_json(report);
 }
 
@@ -106,19 +111,8 @@ std::string inspection(const Case& self, int threads) {
   return io::inspection_json(io::inspect(self.file, self.model, run_options(threads)));
 }
 
-void write_boundary(const Case& self, const std::filesystem::path& path, const std::string& unit) {
-  const std::string extension = path.extension().string();
-  if (extension == ".vtu") return io::write_boundary_vtu(path, self.model);
-  if (extension == ".svg" && self.dimension() == 2) return io::write_boundary_svg(path, self.file.title(), self.model);
-  if (extension == ".igs" || extension == ".iges") {
-    io::iges::WriterOptions options;
-    options.unit = unit;
-    options.title = self.file.title();
-    std::visit([&](const auto& known) { io::iges::write_iges(path, known.oriented, options); }, self.model);
-    return;
-  }
-  throw InputError("cannot write '" + path.string() + "': found the extension \"" + extension +
-                   "\", expected .vtu, .igs, .iges, or .svg for a region of the plane");
+void write_boundary(const Case& self, const std::filesystem::path& path, const std::optional<std::string>& unit) {
+  io::write_boundary(path, self.file, self.model, {.unit = unit});
 }
 
 const io::AnyAnalysis& solved(const Case& self) {
@@ -168,6 +162,63 @@ py::tuple evaluate(const Case& self, const py::array_t<double, py::array::c_styl
       solved(self).known);
 }
 
+/// A row for each node.
+template <int Dim>
+py::array_t<double> vectors_of(const std::vector<std::array<double, Dim>>& nodes) {
+  py::array_t<double> rows({static_cast<py::ssize_t>(nodes.size()), py::ssize_t{Dim}});
+  std::copy_n(nodes.data()->data(), nodes.size() * Dim, rows.mutable_data());
+  return rows;
+}
+
+/// A row for each column of the parts.
+py::array_t<double> stacked(const std::vector<Eigen::MatrixXd>& parts, py::ssize_t rows, py::ssize_t components) {
+  py::array_t<double> all({rows, components});
+  double* next = all.mutable_data();
+  for (const Eigen::MatrixXd& part : parts) next = std::copy(part.data(), part.data() + part.size(), next);
+  return all;
+}
+
+/// The solution on the boundary at the nodes of rules that integrate products of the fields: elements, patches, points
+/// (n x Dim), normals, weights, values (n x components), fluxes.
+template <int Dim>
+py::tuple boundary_fields_of(const io::Analysis<Dim>& known) {
+  const solver::FieldSpace<Dim>& space = known.setting.space;
+  const quadrature::TargetRules<Dim> rules = io::sampling_rules(space);
+  io::BoundarySampler<Dim> sampler(space, known.solution, rules);
+  std::vector<int> elements;
+  std::vector<int> patches;
+  std::vector<std::array<double, Dim>> points;
+  std::vector<std::array<double, Dim>> normals;
+  std::vector<double> weights;
+  std::vector<Eigen::MatrixXd> values;
+  std::vector<Eigen::MatrixXd> fluxes;
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
+    const io::BoundarySample<Dim>& sample = sampler.sample(e);
+    for (std::size_t i = 0; i < sample.nodes.size(); ++i) {
+      elements.push_back(e);
+      patches.push_back(space.table.elements[static_cast<std::size_t>(e)].patch);
+      std::array<double, Dim>& point = points.emplace_back();
+      std::array<double, Dim>& normal = normals.emplace_back();
+      for (std::size_t d = 0; d < Dim; ++d) {
+        point[d] = sample.nodes.position[d][i];
+        normal[d] = sample.nodes.normal[d][i];
+      }
+      weights.push_back(sample.nodes.weight[i]);
+    }
+    values.push_back(sample.value);
+    fluxes.push_back(sample.flux);
+  }
+  const auto count = static_cast<py::ssize_t>(weights.size());
+  const py::ssize_t components = known.report.components;
+  return py::make_tuple(py::array_t<int>(count, elements.data()), py::array_t<int>(count, patches.data()),
+                        vectors_of<Dim>(points), vectors_of<Dim>(normals), py::array_t<double>(count, weights.data()),
+                        stacked(values, count, components), stacked(fluxes, count, components));
+}
+
+py::tuple boundary_fields(const Case& self) {
+  return std::visit([](const auto& known) { return boundary_fields_of(known); }, solved(self).known);
+}
+
 }  // namespace
 
 void declare_case(py::module_& module) {
@@ -184,6 +235,7 @@ void declare_case(py::module_& module) {
       .def("inspection", &inspection, Released())
       .def("write_boundary", &write_boundary, Released())
       .def("write_solution", &write_solution, Released())
+      .def("boundary_fields", &boundary_fields)
       .def("evaluate", &evaluate);
 }
 

@@ -108,7 +108,7 @@ void write_json(const std::filesystem::path& path, const Report& report) {
   write_file(path, to_json(report));
 }
 
-void write_verification_json(const std::filesystem::path& path, const std::vector<VerifiedCase>& cases) {
+std::string verification_json(const std::vector<VerifiedCase>& cases) {
   Json list = Json::array();
   int worst = 0;
   for (const VerifiedCase& one : cases) {
@@ -126,7 +126,7 @@ void write_verification_json(const std::filesystem::path& path, const std::vecto
   json["isorim"] = program_version();
   json["status"] = worst == 0 ? "ok" : "failed";
   json["cases"] = std::move(list);
-  write_file(path, json_text(json));
+  return json_text(json);
 }
 
 }  // namespace isorim::io

@@ -31,6 +31,6 @@ struct VerifiedCase {
 };
 
 /// { "isorim", "status", "cases": [ { "file", "case", "status", "time", "expectations": [..] } ] }.
-void write_verification_json(const std::filesystem::path& path, const std::vector<VerifiedCase>& cases);
+std::string verification_json(const std::vector<VerifiedCase>& cases);
 
 }  // namespace isorim::io

@@ -9,7 +9,7 @@
 #include "io/cad/cad_facts.h"
 #include "io/results/report.h"
 
-/// What several JSON files hold; for the .cpp files of this folder.
+/// What several JSON texts hold; for .cpp files alone.
 namespace isorim::io {
 
 /// Keeps keys in the order in which they are added.

@@ -238,6 +238,10 @@ const Schema<SweepKeys>& schema<SweepKeys>() {
   return declared;
 }
 
+std::vector<const Description*> sweep_tables() {
+  return described_tables(schema<SweepKeys>().description());
+}
+
 std::string sweep_reference() {
   return reference_text(schema<SweepKeys>().description());
 }

@@ -129,6 +129,9 @@ struct KeyType<ColumnKeys> : PlainKey {
 template <>
 const Schema<SweepKeys>& schema<SweepKeys>();
 
+/// The declarations of all tables that a sweep file may hold.
+std::vector<const Description*> sweep_tables();
+
 /// All keys of a sweep file, as text for the terminal and as Markdown.
 std::string sweep_reference();
 std::string sweep_reference_markdown();

@@ -26,6 +26,7 @@ from ._isorim import GeometryError, InputError, NumericalError
 __version__ = _isorim.version
 __all__ = [
     "Boundary",
+    "BoundaryFields",
     "Evaluation",
     "Fit",
     "GeometryError",
@@ -97,6 +98,35 @@ class Evaluation:
     location: np.ndarray
     value: np.ndarray
     gradient: np.ndarray
+
+
+@dataclass(frozen=True)
+class BoundaryFields:
+    """The solution of an analysis on the boundary, at n nodes of rules that integrate products of the fields.
+
+    ``(fields.weight * fields.flux[:, 0]).sum()`` is the total flux.
+
+    Attributes
+    ----------
+    element, patch : numpy.ndarray of int, shape (n,)
+        Of each node; `patch` counts as `Boundary.patches` does.
+    points, normals : numpy.ndarray, shape (n, dimension)
+        Normals are unit vectors that point outward.
+    weight : numpy.ndarray, shape (n,)
+        Of the node in an integral over the boundary; some are negative on trimmed elements.
+    value : numpy.ndarray, shape (n, components)
+        Potential (one component) or displacement.
+    flux : numpy.ndarray, shape (n, components)
+        Normal derivative times conductivity, or traction.
+    """
+
+    element: np.ndarray
+    patch: np.ndarray
+    points: np.ndarray
+    normals: np.ndarray
+    weight: np.ndarray
+    value: np.ndarray
+    flux: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -257,19 +287,39 @@ class Boundary:
         return _isorim.sections(self._case, [float(x) for x in normal], distances, [float(x) for x in point],
                                 fit_tolerance, threads)
 
-    def run(self, *, threads: int = 0) -> dict[str, Any]:
+    def run(self, *, output: str | os.PathLike[str] | None = None, threads: int = 0) -> dict[str, Any]:
         """Computes everything that the case asks for: the content of results.json, lists of numbers as arrays.
 
         What is not finite is NaN in arrays, None by itself.
+
+        Parameters
+        ----------
+        output : path, optional
+            A folder for the files that ``isorim run`` writes; it is made if need be.
+        threads : int
+            0: all.
         """
-        return _arrays(json.loads(self._case.run(threads)))
+        return _arrays(json.loads(self._case.run(threads, None if output is None else os.fspath(output))))
+
+    def boundary_fields(self) -> BoundaryFields:
+        """The solution of an analysis on the boundary, after `run`."""
+        return BoundaryFields(*self._case.boundary_fields())
 
     def evaluate(self, points: Any, *, threads: int = 0) -> Evaluation:
         """The solution of an analysis, after `run`, at points of shape (n, dimension)."""
         return Evaluation(*_isorim.Case.evaluate(self._case, np.asarray(points, dtype=float), threads))
 
-    def write(self, path: str | os.PathLike[str], *, unit: str = "mm") -> None:
-        """Writes the boundary: .vtu (exact Bézier cells), .igs, .iges (in `unit`), .svg for a region of the plane."""
+    def write(self, path: str | os.PathLike[str], *, unit: str | None = None) -> None:
+        """Writes the boundary as ``isorim convert`` does.
+
+        Parameters
+        ----------
+        path : path
+            Its extension tells the format: .vtu (exact Bézier cells), .igs, .iges, .iga (T-splines by their
+            extraction), .stl (a watertight mesh of a solid), .svg (a region of the plane).
+        unit : str, optional
+            IGES: of the lengths of a shape that tells none; mm if absent.
+        """
         self._case.write_boundary(os.fspath(path), unit)
 
     def write_solution(self, path: str | os.PathLike[str]) -> None:
@@ -301,9 +351,10 @@ def load(source: Any, *, overrides: Any = (), folder: str | os.PathLike[str] = "
     return Boundary(_isorim.Case.from_file(os.fspath(source), list(overrides), threads))
 
 
-def run(source: Any, *, overrides: Any = (), folder: str | os.PathLike[str] = ".", threads: int = 0) -> dict[str, Any]:
+def run(source: Any, *, overrides: Any = (), folder: str | os.PathLike[str] = ".",
+        output: str | os.PathLike[str] | None = None, threads: int = 0) -> dict[str, Any]:
     """Loads a case and computes everything that it asks for; see `load` and `Boundary.run`."""
-    return load(source, overrides=overrides, folder=folder, threads=threads).run(threads=threads)
+    return load(source, overrides=overrides, folder=folder, threads=threads).run(output=output, threads=threads)
 
 
 def nurbs_curve(degree: int, knots: Any, points: Any, weights: Any = None, **keys: Any) -> dict[str, Any]:

@@ -38,6 +38,16 @@ class Evaluation:
     gradient: Floats
 
 @dataclass(frozen=True)
+class BoundaryFields:
+    element: NDArray[np.int32]
+    patch: NDArray[np.int32]
+    points: Floats
+    normals: Floats
+    weight: Floats
+    value: Floats
+    flux: Floats
+
+@dataclass(frozen=True)
 class Fit:
     curve: dict[str, Any]
     parameters: Floats
@@ -78,16 +88,22 @@ class Boundary:
         fit_tolerance: float = ...,
         threads: int = ...,
     ) -> list[dict[str, Any]]: ...
-    def run(self, *, threads: int = ...) -> dict[str, Any]: ...
+    def run(self, *, output: Path | None = ..., threads: int = ...) -> dict[str, Any]: ...
+    def boundary_fields(self) -> BoundaryFields: ...
     def evaluate(self, points: ArrayLike, *, threads: int = ...) -> Evaluation: ...
-    def write(self, path: Path, *, unit: str = ...) -> None: ...
+    def write(self, path: Path, *, unit: str | None = ...) -> None: ...
     def write_solution(self, path: Path) -> None: ...
 
 def load(
     source: Path | Mapping[str, Any], *, overrides: Sequence[str] = ..., folder: Path = ..., threads: int = ...
 ) -> Boundary: ...
 def run(
-    source: Path | Mapping[str, Any], *, overrides: Sequence[str] = ..., folder: Path = ..., threads: int = ...
+    source: Path | Mapping[str, Any],
+    *,
+    overrides: Sequence[str] = ...,
+    folder: Path = ...,
+    output: Path | None = ...,
+    threads: int = ...,
 ) -> dict[str, Any]: ...
 def nurbs_curve(
     degree: int, knots: ArrayLike, points: ArrayLike, weights: ArrayLike | None = ..., **keys: Any

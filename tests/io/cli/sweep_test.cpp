@@ -278,6 +278,24 @@ TEST_F(SweepTest, RefusesToMixSweeps) {
   EXPECT_EQ(column("area").size(), 4);
 }
 
+/// One case of two takes longer than it may, until it may take longer.
+TEST_F(SweepTest, RetriesFailedCasesAlone) {
+  base +=
+      "[analysis]\nequation = 'laplace'\n[[boundary_condition]]\nkind = 'value'\nvalue = 'x'\n"
+      "[discretisation]\nrefine = 0\n";
+  const std::string levels = "[[parameter]]\nkey = 'discretisation.refine'\nvalues = [0, 4]\n";
+  EXPECT_EQ(sweep(levels + "[run]\ntimeout = 0.5\n").status, 3);
+  EXPECT_THAT(column("status"), ElementsAre("ok", "timed_out"));
+  const auto written = std::filesystem::last_write_time(path("out/cases/1/results.json"));
+  // What has ended has ended, unless it is asked for.
+  EXPECT_EQ(sweep(levels, {"--resume"}).status, 3);
+  EXPECT_THAT(column("status"), ElementsAre("ok", "timed_out"));
+  EXPECT_EQ(sweep(levels, {"--resume", "--retry"}).status, 0);
+  EXPECT_THAT(column("status"), ElementsAre("ok", "ok"));
+  EXPECT_EQ(std::filesystem::last_write_time(path("out/cases/1/results.json")), written);
+  EXPECT_EQ(sweep(levels, {"--retry"}).status, 2);
+}
+
 TEST_F(SweepTest, DiscardsItsOwnCasesAlone) {
   write("out/cases/mine.toml", "");
   write("out/cases/9/mine.txt", "");

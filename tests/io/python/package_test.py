@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import json
 import math
 import os
 import signal
@@ -69,6 +70,43 @@ class Shapes(unittest.TestCase):
             for ball in (isorim.load(path, overrides=["geometry.radius=2"]),
                          isorim.load(text, overrides=["geometry.radius=2"])):
                 self.assertAlmostEqual(ball.properties()["volume"].value, 32 / 3 * PI, delta=1e-11)
+
+    def test_trimmed_surfaces_from_arrays_keep_what_their_loops_bound(self):
+        square = np.array([[[-2, -2, 1], [2, -2, 1]], [[-2, 2, 1], [2, 2, 1]]], dtype=float)
+        w = math.sqrt(0.5)
+        turn = np.array([[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0]], dtype=float)
+        rim = isorim.nurbs_curve(2, [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4], 0.5 + 0.25 * turn,
+                                 [1, w, 1, w, 1, w, 1, w, 1])
+        lid = isorim.nurbs_surface((1, 1), ([0, 0, 1, 1], [0, 0, 1, 1]), square, trims=[rim])
+        plate = isorim.load({"type": "patches", "patches": [lid]})
+        self.assertAlmostEqual(plate.properties()["area"].value, PI, delta=1e-12)
+        self.assertFalse(plate.inspect()["geometry"]["closed"])
+        self.assertTrue(plate.inspect()["patches"][0]["trimmed"])
+
+    def test_t_splines_are_written_and_come_back(self):
+        ball = isorim.load({"type": "tspline", "from": BALL, "refine": {"where": "z > 0.5", "levels": 1}})
+        self.assertAlmostEqual(ball.properties()["volume"].value, 4 / 3 * PI, delta=1e-12)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "ball.iga")
+            ball.write(path)
+            again = isorim.load(path)
+            self.assertGreater(again.inspect()["patches"][0]["extraction"]["hanging_sides"], 0)
+            self.assertAlmostEqual(again.properties()["volume"].value, 4 / 3 * PI, delta=1e-11)
+
+    def test_meshes_have_the_volume_of_the_solid_to_their_tolerance(self):
+        ball = isorim.load({"geometry": BALL, "output": {"stl_tolerance": 1e-3}})
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "ball.stl")
+            ball.write(path)
+            with open(path, "rb") as file:
+                data = file.read()
+        (count,) = np.frombuffer(data, dtype="<u4", count=1, offset=80)
+        facets = np.frombuffer(data, dtype=[("normal", "<f4", 3), ("corner", "<f4", (3, 3)), ("_", "<u2")], offset=84)
+        self.assertEqual(len(facets), count)
+        corner = facets["corner"].astype(float)
+        volume = np.einsum("ij,ij->i", corner[:, 0], np.cross(corner[:, 1], corner[:, 2])).sum() / 6
+        self.assertLess(abs(volume - 4 / 3 * PI), 1e-3 * 4 * PI)
+        self.assertGreater(abs(volume - 4 / 3 * PI), 0)
 
     def test_boundaries_are_written_and_come_back(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -154,9 +192,55 @@ class Analyses(unittest.TestCase):
         self.assertTrue(np.allclose(found.gradient[0, 0], [1.0, -0.5], atol=1e-5))
         self.assertTrue(np.isnan(found.value[1]).all())
 
+    def test_fields_on_the_boundary_are_arrays_that_integrate(self):
+        disc = isorim.load(DISC)
+        disc.run()
+        fields = disc.boundary_fields()
+        x, y = fields.points.T
+        self.assertTrue(np.allclose(np.hypot(x, y), 2, atol=1e-13))
+        self.assertTrue(np.allclose(fields.normals, fields.points / 2, atol=1e-13))
+        self.assertAlmostEqual(fields.weight.sum(), 4 * PI, delta=1e-11)
+        self.assertTrue(np.allclose(fields.value[:, 0], x**2 - y**2, atol=1e-5))
+        self.assertTrue(np.allclose(fields.flux[:, 0], x**2 - y**2, atol=1e-3))
+        # The energy: the integral of |grad u|^2 = 4 r^2 over the disc.
+        self.assertAlmostEqual((fields.weight * fields.value[:, 0] * fields.flux[:, 0]).sum(), 32 * PI, delta=1e-4)
+        self.assertEqual(set(fields.patch), {0})
+        self.assertGreater(len(set(fields.element)), 4)
+
+    def test_tractions_on_the_boundary_are_those_of_the_load(self):
+        block = isorim.load({
+            "geometry": {"type": "box", "size": [1, 1, 2]},
+            "analysis": {"equation": "elasticity"},
+            "material": {"young": 2.0, "poisson": 0.0},
+            "boundary_condition": [
+                {"where": "abs(x) < 1e-9 || abs(y) < 1e-9 || abs(z) < 1e-9", "kind": "symmetry"},
+                {"where": "z > 2 - 1e-9", "kind": "traction", "value": ["0", "0", "3"]},
+                {"kind": "traction"}],
+        })
+        block.run()
+        fields = block.boundary_fields()
+        self.assertEqual(fields.value.shape, (len(fields.weight), 3))
+        top = fields.points[:, 2] > 2 - 1e-9
+        self.assertTrue(np.allclose(fields.value[top, 2], 3.0, atol=1e-8))
+        self.assertTrue(np.allclose(fields.weight @ fields.flux, 0.0, atol=1e-7))
+        self.assertTrue(np.allclose(fields.weight[top] @ fields.flux[top], [0, 0, 3], atol=1e-7))
+
+    def test_runs_write_the_files_of_the_program(self):
+        with tempfile.TemporaryDirectory() as folder:
+            output = os.path.join(folder, "new", "disc")
+            results = isorim.run(DISC, output=output)
+            self.assertLessEqual({"boundary.vtu", "solution.vtu", "fields.vtu", "probe_middle.csv", "results.h5",
+                                  "results.json"}, set(os.listdir(output)))
+            with open(os.path.join(output, "results.json"), encoding="utf-8") as file:
+                written = json.load(file)
+            self.assertEqual(written["analysis"]["unknowns"], results["analysis"]["unknowns"])
+            with self.assertRaisesRegex(isorim.InputError, "cannot make the folder"):
+                isorim.run(DISC, output=os.path.join(output, "results.json"))
+
     def test_there_is_no_solution_before_the_run(self):
-        with self.assertRaisesRegex(isorim.InputError, "no solution"):
-            isorim.load(DISC).evaluate([[0, 0]])
+        for early in (lambda case: case.evaluate([[0, 0]]), lambda case: case.boundary_fields()):
+            with self.assertRaisesRegex(isorim.InputError, "no solution"):
+                early(isorim.load(DISC))
 
 
 class Errors(unittest.TestCase):
