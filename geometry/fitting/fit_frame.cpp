@@ -26,6 +26,8 @@ void require_options(const CurveFitOptions<Dim>& options) {
   if (options.parameter_corrections < 0)
     refuse(fmt::format("{} parameter corrections asked for", options.parameter_corrections));
   if (options.knot_steps < 0) refuse(fmt::format("{} steps of the knots asked for", options.knot_steps));
+  if (options.peak_steps < 0)
+    refuse(fmt::format("{} steps against the largest distance asked for", options.peak_steps));
   if (options.fairness && !(*options.fairness >= 0.0 && std::isfinite(*options.fairness)))
     refuse(fmt::format("fairness {}; expected 0 or more", *options.fairness));
   if (!(options.fairness_share >= 0.0 && std::isfinite(options.fairness_share)))
@@ -87,6 +89,13 @@ FitFrame<Dim> FitFrame<Dim>::thinned(int stride) const {
     few.data.weights.push_back(all.data.weights[static_cast<std::size_t>(i)]);
   }
   few.data.points = all.data.points(Eigen::all, kept);
+  return result;
+}
+
+template <int Dim>
+FitFrame<Dim> FitFrame<Dim>::reweighted(std::vector<double> weights) const {
+  FitFrame result = *this;
+  result.prepared_.data.weights = std::move(weights);
   return result;
 }
 

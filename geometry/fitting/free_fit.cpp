@@ -10,6 +10,7 @@
 #include "geometry/errors.h"
 #include "geometry/fitting/curve_shape.h"
 #include "geometry/fitting/knot_steps.h"
+#include "geometry/fitting/peak_steps.h"
 
 namespace isorim::geometry {
 
@@ -109,8 +110,8 @@ Fairness choose_fairness(const FitFrame<Dim>& frame, const FitState<Dim>& state)
   return fairness;
 }
 
-/// Lobes of curvature that are lower than half the distances of the data are no shape but noise: the fairness term is
-/// made stronger around them until they are gone. Where that costs too much distance, the higher half of them is kept
+/// Lobes of curvature that are lower than the distances of the data are no shape but noise: the fairness term is made
+/// stronger around them until they are gone. Where that costs too much distance, the higher half of them is kept
 /// and the lower half tried again.
 class LobeSmoother {
  public:
@@ -141,7 +142,6 @@ class LobeSmoother {
  private:
   static constexpr double stronger = 32.0;
   static constexpr double strongest = 1e6;
-  static constexpr double low = 0.5;
   static constexpr double rms_growth = 1.2;
   static constexpr double max_growth = 1.05;
 
@@ -157,7 +157,7 @@ class LobeSmoother {
   /// The lowest first.
   std::vector<CurvatureLobe> low_lobes() const {
     std::vector<CurvatureLobe> lobes = curvature_lobes(frame_.curve(state_), frame_.options().closed);
-    std::erase_if(lobes, [&](const CurvatureLobe& lobe) { return lobe.height >= low * level_ || is_kept(lobe); });
+    std::erase_if(lobes, [&](const CurvatureLobe& lobe) { return lobe.height >= level_ || is_kept(lobe); });
     std::sort(lobes.begin(), lobes.end(),
               [](const CurvatureLobe& a, const CurvatureLobe& b) { return a.height < b.height; });
     return lobes;
@@ -192,6 +192,14 @@ class LobeSmoother {
   std::vector<char> is_kept_;
 };
 
+/// A distance that is larger than the largest of as many normal deviations by more than one of them is not the data's
+/// scatter: there the curve has not yet found its knots.
+template <int Dim>
+bool has_peak(const FitFrame<Dim>& frame, const FitState<Dim>& state) {
+  const double expected = std::sqrt(2.0 * std::log(static_cast<double>(frame.point_count()))) + 1.0;
+  return state.max_distance > expected * std::sqrt(state.mean_squared);
+}
+
 /// Knots, parameters and control points improved together.
 template <int Dim>
 FitState<Dim> find_knots(const FitFrame<Dim>& frame, int control_points) {
@@ -199,8 +207,12 @@ FitState<Dim> find_knots(const FitFrame<Dim>& frame, int control_points) {
   if (!frame.moves_knots()) frame.correct_parameters(state, 1);
   state.fairness = choose_fairness(frame, state);
   double damping = 1e-3;
-  for (int i = 0; i < frame.options().knot_steps; ++i)
+  const int steps = frame.options().knot_steps;
+  const int most_steps = steps > 0 ? steps + 2 : 0;
+  for (int i = 0; i < most_steps; ++i) {
+    if (i >= steps && !has_peak(frame, state)) break;
     if (!move_knots(frame, state, damping)) break;
+  }
   return state;
 }
 
@@ -246,6 +258,7 @@ FitState<Dim> free_fit(const FitFrame<Dim>& frame, int control_points) {
   frame.correct_parameters(state, 1);
   if constexpr (Dim == 2)
     if (state.fairness.mu > 0.0 && state.fairness.derivative <= frame.degree()) LobeSmoother(frame, state).run();
+  lower_peaks(frame, frame.options().peak_steps, state);
   return state;
 }
 

@@ -153,6 +153,14 @@ const Schema<FitKeys>& schema<FitKeys>() {
           .key("corrections", &FitKeys::corrections,
                {.text = "method = \"fixed_knots\": how often parameters move to the nearest points of the curve.",
                 .range = Range::between(0, 1000)})
+          .key("knot_steps", &FitKeys::knot_steps,
+               {.text = "method = \"free\": steps in which knots, parameters and control points are improved together. "
+                        "More of them bring the curve nearer.",
+                .range = Range::between(0, 1000)})
+          .key("peak_steps", &FitKeys::peak_steps,
+               {.text = "method = \"free\": steps in which the largest distance is lowered at little cost of the "
+                        "others. 8, with knot_steps = 8, take four to six times the time.",
+                .range = Range::between(0, 1000)})
           .key("fairness", &FitKeys::fairness,
                {.text = "Factor of the integral of the squared third derivative over the parameters 0 to 1, which is "
                         "added to the mean squared distance. 0: method = \"free\" chooses one, the others take none.",

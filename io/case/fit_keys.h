@@ -57,6 +57,8 @@ struct FitKeys : SolidKeys {
   geometry::FitParameters parameters = geometry::FitParameters::chord_length;
   geometry::FitKnots knots = geometry::FitKnots::uniform;
   int corrections = 0;
+  int knot_steps = 2;
+  int peak_steps = 0;
   double fairness = 0.0;
   double corner_angle = 0.0;
 

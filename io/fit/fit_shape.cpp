@@ -195,6 +195,7 @@ class FitBuilder {
     facts_.points_reduced += static_cast<int>(reduced.points.cols());
     geometry::OrderedContours ordered = ordered_contours(reduced);
     facts_.thinned = facts_.thinned || ordered.thinned;
+    report_doubt(section.name, ordered);
     for (const geometry::DroppedPoint& point : ordered.dropped) {
       dropped_[drop_reason_name(point.reason)] += reduced.counts[static_cast<std::size_t>(point.index)];
     }
@@ -223,6 +224,15 @@ class FitBuilder {
     options.largest_gap = keys_.largest_gap;
     options.least_points = keys_.least_points;
     return geometry::order_contours(reduced.points, reduced.counts, options);
+  }
+
+  void report_doubt(const std::string& name, const geometry::OrderedContours& ordered) {
+    constexpr double negligible = 0.02;
+    if (ordered.doubtful_share <= negligible) return;
+    facts_.warnings.push_back(fmt::format(
+        "{}: along {:.0f} % of the contours, about ({:.4g}, {:.4g}) for one, other parts of them are nearer "
+        "than the noise lets tell apart; they may have been mixed up",
+        name, 100.0 * ordered.doubtful_share, ordered.doubtful_place.x(), ordered.doubtful_place.y()));
   }
 
   void report_open(const std::string& name, const geometry::Contour& contour) {
@@ -282,6 +292,8 @@ class FitBuilder {
       options.point_weights = contour.weights;
     }
     options.parameter_corrections = keys_.corrections;
+    options.knot_steps = keys_.knot_steps;
+    options.peak_steps = keys_.peak_steps;
     // 0 leaves it to the method.
     if (keys_.fairness > 0.0) options.fairness = keys_.fairness;
     options.corner_angle = keys_.corner_angle;

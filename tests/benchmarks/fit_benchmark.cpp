@@ -35,12 +35,13 @@ void free_fit(benchmark::State& state) {
 }
 BENCHMARK(free_fit)->DenseRange(1, 4)->Unit(benchmark::kMillisecond);
 
-void free_fit_four_steps(benchmark::State& state) {
+void free_fit_with_peak_steps(benchmark::State& state) {
   CurveFitOptions<2> options;
-  options.knot_steps = 4;
+  options.knot_steps = 8;
+  options.peak_steps = 8;
   fit_section(state, options);
 }
-BENCHMARK(free_fit_four_steps)->DenseRange(1, 4)->Unit(benchmark::kMillisecond);
+BENCHMARK(free_fit_with_peak_steps)->DenseRange(1, 4)->Unit(benchmark::kMillisecond);
 
 void fixed_knots(benchmark::State& state) {
   CurveFitOptions<2> options;
