@@ -69,16 +69,32 @@ std::vector<Eigen::Index> distinct_points(const Points<Dim>& points, bool closed
 
 /// Points at which the polygon turns by more than the angle; the ends of an open one are none.
 template <int Dim>
-std::vector<int> find_corners(const Points<Dim>& points, bool closed, double angle) {
-  std::vector<int> corners;
-  if (angle == 0.0) return corners;
-  const double cosine = std::cos(angle * std::numbers::pi / 180.0);
+std::vector<int> find_corners(const Points<Dim>& points, const CurveFitOptions<Dim>& options) {
+  if (options.corner_angle == 0.0) return {};
+  const double largest_cosine = std::cos(options.corner_angle * std::numbers::pi / 180.0);
   const Eigen::Index count = points.cols();
-  for (Eigen::Index i = closed ? 0 : 1; i < (closed ? count : count - 1); ++i) {
+  struct Turn {
+    double cosine;
+    int point;
+  };
+  std::vector<Turn> turns;
+  for (Eigen::Index i = options.closed ? 0 : 1; i < (options.closed ? count : count - 1); ++i) {
     const Vector<Dim> in = points.col(i) - points.col((i + count - 1) % count);
     const Vector<Dim> out = points.col((i + 1) % count) - points.col(i);
-    if (in.dot(out) < cosine * in.norm() * out.norm()) corners.push_back(static_cast<int>(i));
+    const double cosine = in.dot(out) / (in.norm() * out.norm());
+    if (cosine < largest_cosine) turns.push_back({cosine, static_cast<int>(i)});
   }
+  // The sharpest first. From one corner to the next there must be as many steps as the degree: noise makes two of one.
+  std::stable_sort(turns.begin(), turns.end(), [](const Turn& a, const Turn& b) { return a.cosine < b.cosine; });
+  std::vector<int> corners;
+  for (const Turn& turn : turns) {
+    const bool is_near = std::any_of(corners.begin(), corners.end(), [&](int corner) {
+      const int steps = std::abs(turn.point - corner);
+      return std::min(steps, options.closed ? static_cast<int>(count) - steps : steps) < options.degree;
+    });
+    if (!is_near) corners.push_back(turn.point);
+  }
+  std::sort(corners.begin(), corners.end());
   return corners;
 }
 
@@ -147,7 +163,7 @@ PreparedPoints<Dim> prepare_points(const Points<Dim>& points, const CurveFitOpti
   if (by_curvature(options)) weights = curvature_weights(circle_radii(prepared.data.points));
   const double mean = std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(weights.size());
   for (double& weight : weights) weight /= mean;
-  prepared.corners = find_corners(prepared.data.points, options.closed, options.corner_angle);
+  prepared.corners = find_corners(prepared.data.points, options);
   if (options.closed && !prepared.corners.empty()) turn_to(prepared.corners.front(), prepared);
   give_parameters(options.parameters, prepared);
   return prepared;

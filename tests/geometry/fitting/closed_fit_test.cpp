@@ -226,6 +226,31 @@ TEST(ClosedFit, ChoosesTheNumberOfControlPoints) {
   }
 }
 
+/// Noise makes two corners of one: the sharper one stays, so that there are data from each corner to the next.
+TEST(ClosedFit, OfNeighbouringCornersTheSharpestStays) {
+  Points<2> points(2, 42);
+  for (int i = 0; i < 40; ++i) {
+    const double t = pi * i / 40;
+    points.col(i) << std::cos(t), std::sin(t);
+  }
+  points.col(40) << -1.0, -0.05;
+  points.col(41) << 0.9, -0.1;
+  for (const int degree : {2, 3}) {
+    CurveFitOptions<2> options;
+    options.degree = degree;
+    options.corner_angle = 60;
+    options.control_points = 20;
+    const CurveFit<2> fit = fit_points(points, options);
+    for (std::size_t i = 0; i < fit.corners.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const int steps = fit.corners[i] - fit.corners[j];
+        EXPECT_GE(std::min(steps, 42 - steps), degree);
+      }
+    EXPECT_GE(fit.corners.size(), 1U);
+    EXPECT_LT(fit.quality.rms_distance, 0.05);
+  }
+}
+
 /// A square with points along its sides: straight lines between four corners, exactly.
 TEST(ClosedFit, KeepsCorners) {
   const int side = 8;
