@@ -4,8 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "geometry/fitting/neighbour_tree.h"
+#include "geometry/fitting/two_heaps.h"
 
 namespace isorim::geometry {
 namespace {
@@ -13,6 +16,8 @@ namespace {
 /// Largest ratio of the standard deviations across and along a longish neighbourhood.
 constexpr double longish = 0.3;
 constexpr int least_neighbours = 6;
+/// Fine enough for two bands in one neighbourhood to be told apart afterwards.
+constexpr double steps_a_radius = 6.0;
 
 /// Mean, and principal directions with the standard deviations along them.
 struct Spread {
@@ -110,29 +115,62 @@ class Thinner {
     for (double& radius : radii_) radius = std::min(radius, 1.5 * *usual);
   }
 
-  Point2 projected(const Point2& place, double radius) const {
-    std::vector<Neighbour> found = neighbours(place, radius);
-    if (found.size() < 5) return place;
-    for (Neighbour& n : found) {
-      const double squared = (tree_.points().col(n.index) - place).squaredNorm() / (radius * radius);
-      n.weight *= (1.0 - squared) * (1.0 - squared);
-    }
-    const Spread spread = spread_of(tree_.points(), found);
-    if (!(spread.sigma_along > 0.0)) return place;
-    const Vector2 normal(-spread.along.y(), spread.along.x());
+  /// The parabola of weighted least squares through the neighbours, in the directions of their spread about its mean.
+  struct MiddleLine {
+    Spread spread;
+    Vector2 normal = Vector2::UnitY();
+    double radius = 1.0;
+    Eigen::Vector3d coefficients = Eigen::Vector3d::Zero();
+
+    double along(const Point2& x) const { return (x - spread.mean).dot(spread.along) / radius; }
+    double height(double x) const { return coefficients.dot(Eigen::Vector3d(1.0, x, x * x)); }
+    double offset(const Point2& x) const { return (x - spread.mean).dot(normal) / radius - height(along(x)); }
+  };
+
+  MiddleLine middle_line(const std::vector<Neighbour>& found, double radius) const {
+    MiddleLine line;
+    line.spread = spread_of(tree_.points(), found);
+    line.normal = {-line.spread.along.y(), line.spread.along.x()};
+    line.radius = radius;
     // Normal equations of y = a + b x + c x^2 with x in units of the radius: well conditioned.
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (const Neighbour& n : found) {
-      const Vector2 arm = (tree_.points().col(n.index) - spread.mean) / radius;
-      const double x = arm.dot(spread.along);
+      const Vector2 arm = (tree_.points().col(n.index) - line.spread.mean) / radius;
+      const double x = arm.dot(line.spread.along);
       const Eigen::Vector3d powers(1.0, x, x * x);
       matrix += n.weight * powers * powers.transpose();
-      right += n.weight * arm.dot(normal) * powers;
+      right += n.weight * arm.dot(line.normal) * powers;
     }
-    const double x = (place - spread.mean).dot(spread.along) / radius;
-    const double y = parabola(matrix, right).dot(Eigen::Vector3d(1.0, x, x * x));
-    return spread.mean + radius * (x * spread.along + y * normal);
+    line.coefficients = parabola(matrix, right);
+    return line;
+  }
+
+  /// Where two bands lie side by side, only the neighbours in that of the place stay.
+  void keep_own_band(const Point2& place, double radius, std::vector<Neighbour>& found) const {
+    constexpr double two_bands = 0.85;
+    const MiddleLine line = middle_line(found, radius);
+    std::vector<double> offsets;
+    for (const Neighbour& n : found) offsets.push_back(line.offset(tree_.points().col(n.index)));
+    const std::optional<double> split = split_of_heaps(offsets, two_bands);
+    if (!split) return;
+    const bool is_above = line.offset(place) > *split;
+    std::erase_if(found,
+                  [&](const Neighbour& n) { return (line.offset(tree_.points().col(n.index)) > *split) != is_above; });
+  }
+
+  Point2 projected(const Point2& place, double radius) const {
+    std::vector<Neighbour> found = neighbours(place, radius);
+    if (found.size() < 5) return place;
+    keep_own_band(place, radius, found);
+    for (Neighbour& n : found) {
+      const double squared = (tree_.points().col(n.index) - place).squaredNorm() / (radius * radius);
+      n.weight *= (1.0 - squared) * (1.0 - squared);
+    }
+    const MiddleLine line = middle_line(found, radius);
+    if (!(line.spread.sigma_along > 0.0)) return place;
+    const double x = line.along(place);
+    return line.spread.mean + radius * (x * line.spread.along + line.height(x) * line.normal);
   }
 
   /// Gauss elimination of a positive semidefinite matrix; a vanishing pivot leaves its coefficient 0.
@@ -181,7 +219,7 @@ ThinnedPoints thin_band(const Points<2>& points, const std::vector<double>& weig
     thinned.weights.push_back(0.0);
     thinned.members.emplace_back();
     const Point2 centre = moved.col(static_cast<Eigen::Index>(i));
-    tree.for_each_within(centre, thinner.radius(i) / 4.0, [&](int j, double) {
+    tree.for_each_within(centre, thinner.radius(i) / steps_a_radius, [&](int j, double) {
       if (absorbed[static_cast<std::size_t>(j)]) return;
       absorbed[static_cast<std::size_t>(j)] = 1;
       thinned.members.back().push_back(j);

@@ -160,6 +160,52 @@ TEST(OrderContours, LoopsThatNearlyTouchComeApart) {
   }
 }
 
+/// Two noisy circles, one in the other: from eight standard deviations of the noise on each is met; nearer ones are
+/// told of, down to where the points are one heap; and where all is well nothing is told.
+TEST(OrderContours, NoisyNeighboursComeApartOrAreToldOf) {
+  for (const double noise : {0.005, 0.01}) {
+    for (const double distance : {4.5, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 16.0}) {
+      SCOPED_TRACE(std::to_string(noise) + " x " + std::to_string(distance));
+      std::mt19937 random(11);
+      const double outer = 1.0 + distance * noise;
+      const Points<2> inner_points = scan(circle(1.0), 1500, noise, 0.0, random);
+      const Points<2> outer_points = scan(circle(outer), 1500, noise, 0.0, random);
+      Points<2> points(2, 3000);
+      points << inner_points, outer_points;
+      const OrderedContours ordered = order_contours(points);
+      EXPECT_TRUE(ordered.thinned);
+      if (distance < 7.5) {
+        EXPECT_GT(ordered.doubtful_share, 0.1);
+        EXPECT_NEAR(ordered.doubtful_place.norm(), 0.5 * (1.0 + outer), distance * noise);
+        continue;
+      }
+      ASSERT_EQ(ordered.contours.size(), 2U);
+      for (const Contour& contour : ordered.contours) {
+        EXPECT_TRUE(contour.closed);
+        const double radius = contour.points.colwise().norm().mean();
+        EXPECT_LE(std::min(std::abs(radius - 1.0), std::abs(radius - outer)), 0.3 * noise);
+      }
+      EXPECT_LE(ordered.doubtful_share, distance > 9.5 ? 0.01 : 1.0);
+    }
+    std::mt19937 random(12);
+    EXPECT_EQ(order_contours(scan(circle(1.0), 1500, noise, 0.0, random)).doubtful_share, 0.0);
+  }
+}
+
+/// Cells smaller than the noise: their centroids are a band as well, thinned with their counts.
+TEST(OrderContours, CellsOfANoisyCloudAreThinned) {
+  std::mt19937 random(13);
+  const ReducedPoints cells = reduce_points(scan(circle(1.0), 40000, 0.01, 0.0, random), {0.01, 0.01});
+  ASSERT_GT(cells.points.cols(), 2000);
+  const OrderedContours ordered = order_contours(cells.points, cells.counts);
+  EXPECT_TRUE(ordered.thinned);
+  EXPECT_EQ(ordered.doubtful_share, 0.0);
+  ASSERT_EQ(ordered.contours.size(), 1U);
+  const Eigen::VectorXd radii = ordered.contours[0].points.colwise().norm();
+  EXPECT_NEAR(radii.mean(), 1.0, 1e-3);
+  EXPECT_LE(std::sqrt((radii.array() - radii.mean()).square().mean()), 2e-3);
+}
+
 TEST(OrderContours, OpenContoursStayOpen) {
   std::mt19937 random(9);
   const Curve half = [](double t) { return circle(1.0)(0.5 * t); };
