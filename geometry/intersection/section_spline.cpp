@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "geometry/intersection/smooth_run.h"
 #include "geometry/spline/bspline.h"
 
 namespace isorim::geometry {
@@ -25,13 +27,6 @@ constexpr double shortest_segment = 1e-7;
 double cross(const Vector2& a, const Vector2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
-
-/// Position, unit tangent and curvature vector at a point of a curve.
-struct ArcJet {
-  Point2 point;
-  Vector2 tangent;
-  Vector2 bend;
-};
 
 /// A smooth curve by its arc length, from a table of lengths: Gauss-Legendre rules of 8 points on eighths of each
 /// Bézier segment.
@@ -144,11 +139,6 @@ Point2 de_casteljau(Points<2> points, double t) {
   return points.col(0);
 }
 
-struct Segment {
-  Interval s;
-  Points<2> points;
-};
-
 class SectionFitter {
  public:
   SectionFitter(const SectionCurve& section, const SectionSplineOptions& options)
@@ -178,7 +168,7 @@ class SectionFitter {
       runs_.back().last = start;
       runs_.back().end = i + 1;
     }
-    for (const Run& run : runs_) append(run, {run.first, run.last}, at(run, run.first), at(run, run.last));
+    for (Run& run : runs_) fit(run);
     return spline();
   }
 
@@ -189,6 +179,8 @@ class SectionFitter {
     double last;
     std::size_t begin;
     std::size_t end;
+    /// Of the knots between its segments.
+    int multiplicity = hermite_multiplicity;
   };
 
   /// joints_[i] is before path i; that before the first one is a corner if the curve is open.
@@ -243,35 +235,69 @@ class SectionFitter {
     return result;
   }
 
-  void append(const Run& run, Interval s, const ArcJet& from, const ArcJet& to) {
+  /// Appends the segments of a run: C4, or Hermite's if those are not more.
+  void fit(Run& run) {
+    RunSamples samples;
+    samples.start = at(run, run.first);
+    samples.end = at(run, run.last);
+    samples.is_periodic = is_periodic() && runs_.size() == 1 && joints_.front() == Joint::smooth;
+    const double error_before = error_;
+    const std::size_t count_before = segments_.size();
+    append(run, {run.first, run.last}, samples.start, samples.end, samples);
+    if (!tolerance_met_ || section_.largest_gap > 0.5 * options_.tolerance) return;
+    const std::optional<RunSpline> smooth =
+        smooth_run_spline(samples, 0.8 * options_.tolerance, [&](double s) { return at(run, s).point; });
+    if (!smooth) return;
+    run.multiplicity = 1;
+    error_ = std::max(error_before, smooth->error);
+    segments_.resize(count_before);
+    segments_.insert(segments_.end(), smooth->segments.begin(), smooth->segments.end());
+  }
+
+  void append(const Run& run, Interval s, const ArcJet& from, const ArcJet& to, RunSamples& samples) {
     const Points<2> points = hermite(from, to, s.length());
     const ArcJet middle = at(run, s.middle());
     double error = (de_casteljau(points, 0.5) - middle.point).norm();
     // At a gap the curve jumps; the spline passes through the middle.
     const double allowed = std::max(0.5 * options_.tolerance, 0.75 * section_.largest_gap);
-    for (const double t : {0.3, 0.7, 0.15, 0.85})
-      if (error <= allowed)
-        error = std::max(error, (de_casteljau(points, t) - at(run, s.first + t * s.length()).point).norm());
+    constexpr std::array<double, 4> checks{0.15, 0.3, 0.7, 0.85};
+    std::array<Point2, 4> places;
+    for (const std::size_t k : {1U, 2U, 0U, 3U}) {
+      if (!(error <= allowed)) break;
+      places[k] = at(run, s.first + checks[k] * s.length()).point;
+      error = std::max(error, (de_casteljau(points, checks[k]) - places[k]).norm());
+    }
     const bool is_shortest = s.length() < shortest_segment * (run.last - run.first);
     if (error <= allowed || is_shortest) {
       error_ = std::max(error_, error);
       tolerance_met_ = tolerance_met_ && error <= allowed;
       segments_.push_back({s, points});
+      samples.spans.push_back({s, error});
+      samples.samples.push_back({s.first, from.point});
+      for (std::size_t k = 0; k < checks.size(); ++k) {
+        samples.samples.push_back({s.first + checks[k] * s.length(), places[k]});
+        if (k == 1) samples.samples.push_back({s.middle(), middle.point});
+      }
       return;
     }
-    append(run, {s.first, s.middle()}, from, middle);
-    append(run, {s.middle(), s.last}, middle, to);
+    append(run, {s.first, s.middle()}, from, middle, samples);
+    append(run, {s.middle(), s.last}, middle, to, samples);
   }
 
   // --- The B-spline -------------------------------------------------------------------------------------------
 
-  static int multiplicity(Joint joint) { return joint == Joint::corner ? 5 : joint == Joint::bend ? 4 : 3; }
+  /// C2.
+  static constexpr int hermite_multiplicity = 3;
 
-  /// Of the joint at the start of a segment.
-  Joint joint_at(double s) const {
-    for (const Run& run : runs_)
-      if (run.first == s) return joints_[run.begin];
-    return Joint::smooth;
+  static int multiplicity(Joint joint, const Run& run) {
+    return joint == Joint::corner ? 5 : joint == Joint::bend ? 4 : run.multiplicity;
+  }
+
+  /// Of the knot at the start of a segment.
+  int multiplicity_at(double s) const {
+    const auto after = std::ranges::upper_bound(runs_, s, {}, &Run::first);
+    const Run& run = *std::prev(after);
+    return run.first == s ? multiplicity(joints_[run.begin], run) : run.multiplicity;
   }
 
   SectionSpline spline() const {
@@ -287,11 +313,12 @@ class SectionFitter {
   NurbsCurve<2> spline_curve() const {
     std::vector<double> breaks{0.0};
     for (std::size_t i = 1; i < segments_.size(); ++i)
-      breaks.insert(breaks.end(), static_cast<std::size_t>(multiplicity(joint_at(segments_[i].s.first))),
+      breaks.insert(breaks.end(), static_cast<std::size_t>(multiplicity_at(segments_[i].s.first)),
                     segments_[i].s.first);
     const double end = segments_.back().s.last;
     const bool closes = is_periodic();
-    breaks.insert(breaks.end(), static_cast<std::size_t>(closes ? multiplicity(joints_.front()) : 1), end);
+    breaks.insert(breaks.end(), static_cast<std::size_t>(closes ? multiplicity(joints_.front(), runs_.front()) : 1),
+                  end);
     const KnotVector knots = closes ? KnotVector::periodic(degree, breaks) : KnotVector::clamped(degree, breaks);
     Points<2> points(2, knots.basis_count());
     for (Eigen::Index i = 0; i < points.cols(); ++i) points.col(i) = control_point(knots, static_cast<int>(i));
@@ -306,12 +333,12 @@ class SectionFitter {
     const double period = segments_.back().s.last;
     std::array<double, degree> arguments;
     for (int k = 0; k < degree; ++k) arguments[static_cast<std::size_t>(k)] = knots[index + 1 + k];
-    const Segment* best = nullptr;
+    const ArcSegment* best = nullptr;
     double shift = 0.0;
     const std::vector<double> shifts =
         is_periodic() ? std::vector<double>{0.0, -period, period} : std::vector<double>{0.0};
     for (const double by : shifts)
-      for (const Segment& segment : segments_) {
+      for (const ArcSegment& segment : segments_) {
         const double first = segment.s.first + by;
         const double last = segment.s.last + by;
         const bool is_between = first >= arguments.front() && last <= arguments.back();
@@ -336,7 +363,7 @@ class SectionFitter {
   std::vector<PlanePath> paths_;
   std::vector<Joint> joints_;
   std::vector<Run> runs_;
-  std::vector<Segment> segments_;
+  std::vector<ArcSegment> segments_;
   double length_ = 0.0;
   double error_ = 0.0;
   bool tolerance_met_ = true;

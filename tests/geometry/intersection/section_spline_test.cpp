@@ -81,7 +81,39 @@ TEST(SectionSpline, ConvergesWithTheSixthPower) {
   };
   EXPECT_LE(points(1e-10) / points(1e-4), 1.3 * 10.0);
   EXPECT_GE(points(1e-10) / points(1e-4), 10.0 / 2.6);
-  EXPECT_LE(points(1e-8), 110);
+  EXPECT_LE(points(1e-8), 32);
+}
+
+/// Simple knots, so four continuous derivatives, also at the closing point; of oblique sections of a torus that makes
+/// a quarter of the control points that C2 Hermite segments take (1028).
+TEST(SectionSpline, IsSmoothWithFewControlPoints) {
+  const PlaneSection section = plane_section(torus(2.0, 0.5), plane_frame({0, 0, 0.3}, {0.1, 0.3, 1}));
+  const SectionSpline spline = fit_section(section.loops[0].curve, {.tolerance = 1e-10});
+  ASSERT_TRUE(spline.is_periodic);
+  const std::vector<double> breaks = spline.curve.knots().breakpoints();
+  EXPECT_EQ(static_cast<int>(breaks.size()) - 1 + 5, spline.curve.knots().basis_count());
+  EXPECT_LE(spline.curve.knots().basis_count(), 270);
+  const Points<2> control = spline.curve.control_points();
+  EXPECT_EQ(control.leftCols(5), control.rightCols(5));
+  EXPECT_LE(farthest(section.loops[0].curve, spline.curve), 1e-10);
+}
+
+/// Corners at both ends of a smooth arc: position, tangent and curvature there are those of the curve.
+TEST(SectionSpline, EndsOfArcsAreTheCurves) {
+  const PlaneSection section = plane_section(tube(), plane_frame({0, 0, 2}, {1, 0, 1}));
+  const SectionSpline spline = fit_section(section.chains[0], {.tolerance = 1e-6});
+  EXPECT_LE(spline.curve.knots().basis_count(), 30);
+  const std::vector<NurbsCurve<2>>& parts = section.chains[0].plane_curves.curves;
+  const auto expect_same = [](const CurveJet<2>& arc, const CurveJet<2>& curve) {
+    const double speed = curve.du.norm();
+    EXPECT_LE((arc.point - curve.point).norm(), 1e-13);
+    EXPECT_LE((arc.du - curve.du / speed).norm(), 1e-11);
+    const double bend = (curve.du.x() * curve.duu.y() - curve.du.y() * curve.duu.x()) / (speed * speed * speed);
+    EXPECT_NEAR(arc.du.x() * arc.duu.y() - arc.du.y() * arc.duu.x(), bend, 1e-8);
+  };
+  const auto ends = spline.curve.domain();
+  expect_same(evaluate_jet(spline.curve, ends.first), evaluate_jet(parts.front(), parts.front().domain().first));
+  expect_same(evaluate_jet(spline.curve, ends.last), evaluate_jet(parts.back(), parts.back().domain().last));
 }
 
 TEST(SectionSpline, KeepsCorners) {
