@@ -13,6 +13,7 @@
 #include "geometry/bezier/element_table.h"
 #include "geometry/errors.h"
 #include "geometry/intersection/clipped_face.h"
+#include "geometry/intersection/plane_section.h"
 #include "geometry/intersection/tool_caps.h"
 #include "geometry/trimming/face_locator.h"
 
@@ -152,7 +153,7 @@ struct CapMaker {
   const ClipOptions& options;
 
   std::vector<Patch<3>> operator()(const PlaneTool& tool) const {
-    const PlaneRegion frame = plane_region_frame(tool, clipper.middle());
+    const PlaneFrame frame = cap_frame(tool, clipper.middle());
     return plane_caps(frame, plane_loops(frame, edges, clipper.size(), options));
   }
   std::vector<Patch<3>> operator()(const SphereTool& tool) const {
@@ -168,11 +169,12 @@ struct CapMaker {
  private:
   /// The point lies in the region in which a plane through it cuts the solid.
   bool contains(const Point3& point) const {
-    const PlaneTool plane{point, Vector3(0.4387, 0.2913, 0.8501)};
-    const PlaneRegion cut = section(solid, plane, options);
+    const SectionOptions section_options{options.tolerance, options.gap_tolerance};
+    const PlaneSection cut = plane_section(solid, plane_frame(point, Vector3(0.4387, 0.2913, 0.8501)), section_options);
     if (cut.loops.empty()) return false;
-    const Vector3 d = point - cut.origin;
-    return FaceLocator(cut.loops).winding_number(Point2(d.dot(cut.axis_x), d.dot(cut.axis_y))).value_or(0) != 0;
+    std::vector<TrimLoop> loops;
+    for (const SectionLoop& loop : cut.loops) loops.push_back(loop.curve.plane_curves);
+    return FaceLocator(loops).winding_number(cut.frame.to_plane(point)).value_or(0) != 0;
   }
 };
 
@@ -231,14 +233,6 @@ Boundary<3> clip(const Boundary<3>& solid, const ClipTool& tool, const ClipOptio
   const std::optional<Boundary<3>> half = clip_once(faces, PlaneTool{cone->apex, -cone->axis}, options);
   const std::optional<Boundary<3>> rest = clip_once(half.value_or(faces), tool, options);
   return rest ? *rest : half.value_or(solid);
-}
-
-PlaneRegion section(const Boundary<3>& solid, const PlaneTool& plane, const ClipOptions& options) {
-  const Boundary<3> faces = with_single_surfaces(solid);
-  const Clipper clipper(faces, options);
-  PlaneRegion result = plane_region_frame(plane, clipper.middle());
-  result.loops = plane_loops(result, clipper.cut(implicit_surface(plane)).edges, clipper.size(), options);
-  return result;
 }
 
 }  // namespace isorim::geometry

@@ -8,7 +8,8 @@
 #include "geometry/intersection/implicit_surface.h"
 #include "geometry/vocabulary.h"
 
-/// Solids cut by planes and round tools: what is left, closed by the tool's own faces.
+/// Solids cut by planes and round tools: what is left, closed by the tool's own faces. What a plane and a boundary have
+/// in common is in plane_section.h.
 namespace isorim::geometry {
 
 /// Which side of a round tool is kept.
@@ -68,20 +69,5 @@ struct ClipOptions {
 /// a singular point that is not an ordinary double point; and if a cone whose outside is kept meets the solid with its
 /// other nappe too.
 Boundary<3> clip(const Boundary<3>& solid, const ClipTool& tool, const ClipOptions& options = {});
-
-/// The region in which a plane cuts a solid.
-struct PlaneRegion {
-  /// In the coordinates below, each loop with the solid on its left.
-  std::vector<TrimLoop> loops;
-  /// (x, y) -> origin + x axis_x + y axis_y; the axes are orthonormal, axis_x x axis_y the plane's normal.
-  Point3 origin = Point3::Zero();
-  Vector3 axis_x = Vector3::UnitX();
-  Vector3 axis_y = Vector3::UnitY();
-};
-
-/// The region in which a plane cuts a closed, oriented solid: waterlines, frames. A face of the solid in the plane
-/// counts if the solid lies on the side from which the normal points. No loops if the plane misses the solid. Throws
-/// GeometryError as clip() does. plane_section() (intersection/plane_section.h) tells more.
-PlaneRegion section(const Boundary<3>& solid, const PlaneTool& plane, const ClipOptions& options = {});
 
 }  // namespace isorim::geometry

@@ -7,13 +7,10 @@
 #include <span>
 #include <utility>
 
-#include <Eigen/Geometry>
-
 #include "geometry/errors.h"
 #include "geometry/intersection/directed_loops.h"
 #include "geometry/intersection/plane_image.h"
 #include "geometry/intersection/tool_caps.h"
-#include "geometry/shapes/checks.h"
 #include "geometry/trimming/face_locator.h"
 
 namespace isorim::geometry {
@@ -36,7 +33,7 @@ struct PlaneBox {
 };
 
 /// The rectangle of the plane around the loops; its parameters are the coordinates of the plane.
-NurbsSurface<3> plane_patch(const PlaneRegion& frame, const std::vector<TrimLoop>& loops) {
+NurbsSurface<3> plane_patch(const PlaneFrame& frame, const std::vector<TrimLoop>& loops) {
   PlaneBox box;
   for (const TrimLoop& loop : loops) box.add(loop);
   const Vector2 margin = 0.02 * (box.upper - box.lower);
@@ -44,7 +41,7 @@ NurbsSurface<3> plane_patch(const PlaneRegion& frame, const std::vector<TrimLoop
   const Point2 high = box.upper + margin;
   Points<3> net(3, 4);
   for (Eigen::Index k = 0; k < 4; ++k)
-    net.col(k) = frame.origin + (k % 2 == 0 ? low : high).x() * frame.axis_x + (k < 2 ? low : high).y() * frame.axis_y;
+    net.col(k) = frame.to_space({(k % 2 == 0 ? low : high).x(), (k < 2 ? low : high).y()});
   return NurbsSurface<3>::from_points(KnotVector(1, {low.x(), low.x(), high.x(), high.x()}),
                                       KnotVector(1, {low.y(), low.y(), high.y(), high.y()}), net);
 }
@@ -61,23 +58,17 @@ bool lies_in(const TrimLoop& hole, const FaceLocator& outer) {
 
 }  // namespace
 
-PlaneRegion plane_region_frame(const PlaneTool& plane, const Point3& near) {
-  const Vector3 normal = checks::unit<3>("plane", "normal", plane.normal);
-  Eigen::Index least = 0;
-  normal.cwiseAbs().minCoeff(&least);
-  PlaneRegion frame;
-  frame.origin = near - (near - plane.point).dot(normal) * normal;
-  frame.axis_x = normal.cross(Vector3::Unit(least)).normalized();
-  frame.axis_y = normal.cross(frame.axis_x).normalized();
+PlaneFrame cap_frame(const PlaneTool& plane, const Point3& near) {
+  PlaneFrame frame = plane_frame(plane.point, plane.normal);
+  frame.origin = near - (near - plane.point).dot(frame.normal) * frame.normal;
   return frame;
 }
 
-std::vector<TrimLoop> plane_loops(const PlaneRegion& frame, const std::vector<CapEdge>& edges, double size,
+std::vector<TrimLoop> plane_loops(const PlaneFrame& frame, const std::vector<CapEdge>& edges, double size,
                                   const ClipOptions& options) {
   std::vector<NurbsCurve<2>> curves;
-  const PlaneFrame coordinates{frame.origin, frame.axis_x, frame.axis_y, frame.axis_x.cross(frame.axis_y)};
   for (const CapEdge& edge : edges) {
-    const std::vector<NurbsCurve<2>> pieces = plane_image(edge.surface, edge.curve, coordinates, size);
+    const std::vector<NurbsCurve<2>> pieces = plane_image(edge.surface, edge.curve, frame, size);
     curves.insert(curves.end(), pieces.begin(), pieces.end());
   }
   std::vector<TrimLoop> loops =
@@ -87,7 +78,7 @@ std::vector<TrimLoop> plane_loops(const PlaneRegion& frame, const std::vector<Ca
   return loops;
 }
 
-std::vector<Patch<3>> plane_caps(const PlaneRegion& frame, const std::vector<TrimLoop>& loops) {
+std::vector<Patch<3>> plane_caps(const PlaneFrame& frame, const std::vector<TrimLoop>& loops) {
   struct Part {
     double area;
     std::vector<TrimLoop> loops;

@@ -5,6 +5,7 @@
 
 #include "geometry/boundary.h"
 #include "geometry/intersection/clip.h"
+#include "geometry/intersection/plane_section.h"
 #include "geometry/nurbs/curve.h"
 #include "geometry/nurbs/surface.h"
 
@@ -18,16 +19,16 @@ struct CapEdge {
   NurbsCurve<2> curve;
 };
 
-/// The plane with its own coordinates.
-PlaneRegion plane_region_frame(const PlaneTool& plane, const Point3& near);
+/// The plane of the tool, its origin next to a point, so that coordinates are no larger than the solid.
+PlaneFrame cap_frame(const PlaneTool& plane, const Point3& near);
 
 /// The edges in the coordinates of the plane, joined to loops. Edges along lines of constant u or v are exact; others
 /// are met to rounding by polynomials. `size`: the diagonal of the solid's box.
-std::vector<TrimLoop> plane_loops(const PlaneRegion& frame, const std::vector<CapEdge>& edges, double size,
+std::vector<TrimLoop> plane_loops(const PlaneFrame& frame, const std::vector<CapEdge>& edges, double size,
                                   const ClipOptions& options);
 
 /// Trimmed parts of the plane, one for each connected part, natural normals along the plane's.
-std::vector<Patch<3>> plane_caps(const PlaneRegion& frame, const std::vector<TrimLoop>& loops);
+std::vector<Patch<3>> plane_caps(const PlaneFrame& frame, const std::vector<TrimLoop>& loops);
 
 /// Tells whether a point lies in the solid.
 using PointTest = std::function<bool(const Point3&)>;

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "geometry/intersection/plane_section.h"
 #include "geometry/shapes/solids.h"
 #include "geometry/shapes/transforms.h"
 #include "geometry/topology/orientation.h"
@@ -274,15 +275,15 @@ TEST(Clip, Refusals) {
               ::testing::HasSubstr("do not close"));
 }
 
-TEST(Section, OfAHollowBall) {
+TEST(Clip, OfAHollowBall) {
   Boundary<3> hollow = sphere(1.0);
   hollow.patches.push_back(sphere(0.5).patches.front());
   hollow.patches.back().name = "void";
   hollow = orient(hollow).boundary;
-  const PlaneRegion cut = section(hollow, PlaneTool{Point3(0, 0, 0.3), Vector3(0, 0, 1)});
-  EXPECT_EQ(cut.loops.size(), 2U);
-  EXPECT_EQ(section(hollow, PlaneTool{Point3(0, 0, 0.7), Vector3(0, 0, 1)}).loops.size(), 1U);
-  EXPECT_TRUE(section(hollow, PlaneTool{Point3(0, 0, 1.7), Vector3(0, 0, 1)}).loops.empty());
+  const auto loops_at = [&](double z) { return plane_section(hollow, plane_frame({0, 0, z}, {0, 0, 1})).loops.size(); };
+  EXPECT_EQ(loops_at(0.3), 2U);
+  EXPECT_EQ(loops_at(0.7), 1U);
+  EXPECT_EQ(loops_at(1.7), 0U);
   const Boundary<3> half = clip(hollow, PlaneTool{Point3::Zero(), Vector3(0, 0, 1)});
   EXPECT_THAT(names(half), ::testing::ElementsAre("sphere", "void", "cap"));
   expect_solid(half, 7.0 * pi / 12.0, 2.0 * pi + 0.5 * pi + 0.75 * pi);
@@ -306,7 +307,10 @@ TEST(Clip, TakesExtractedSurfacesElementByElement) {
   corners << -4, 4, -4, 4, -4, -4, 4, 4, 0, 0, 0, 0;
   const auto area_of = [&](const Boundary<3>& solid) {
     const auto plane = NurbsSurface<3>::from_points(side, side, corners);
-    return testing::face_area(TrimmedSurface(plane, section(solid, tool).loops));
+    std::vector<TrimLoop> loops;
+    for (const SectionLoop& loop : plane_section(solid, plane_frame(tool.point, tool.normal)).loops)
+      loops.push_back(loop.curve.plane_curves);
+    return testing::face_area(TrimmedSurface(plane, std::move(loops)));
   };
   EXPECT_NEAR(area_of(torus_by_elements()), area_of(torus(2.0, 0.5)), 1e-12);
 }

@@ -203,7 +203,9 @@ TEST(PlaneSection, TellsTheSidesOfTangentPlanes) {
       SCOPED_TRACE(fmt::format("{} {}", contact.name, d));
       const PlaneSection inside = cut(contact.solid, contact.point - d * n, n);
       EXPECT_EQ(counts(inside), contact.inside);
-      if (contact.area) EXPECT_NEAR(section_area(inside) / contact.area(d), 1.0, 2e-6);
+      if (contact.area) {
+        EXPECT_NEAR(section_area(inside) / contact.area(d), 1.0, 2e-6);
+      }
       EXPECT_EQ(counts(cut(contact.solid, contact.point + d * n, n)), contact.outside);
     }
     // So near that it may count as touching, or be moved: what is found has no open curves.
