@@ -34,10 +34,11 @@ struct SectionSplineOptions {
 /// Between corners and jumps of the curvature a quintic spline by least squares on as few simple knots as the tolerance
 /// takes (smooth_run.h), so C4; it starts from quintic Hermite interpolation of position, tangent and curvature at
 /// points of the arc length, bisected until the distance between them is at most half the tolerance. Where that alone
-/// does it with fewer control points (straight parts, gaps as wide as the tolerance) it stays: C2, knots of multiplicity
+/// does it with fewer control points (straight parts, gaps as wide as the tolerance) it stays: C2, knots of
+/// multiplicity
 /// 3. The spline is C1 where the curvature of the section jumps (4), C0 at corners (5). The error of a segment falls as
-/// the sixth power of its length. Across the gaps of the section, which `error` knows of, the spline takes the middle. Throws GeometryError if
-/// the tolerance is not positive or the curve is a point.
+/// the sixth power of its length. Across the gaps of the section, which `error` knows of, the spline takes the middle.
+/// Throws GeometryError if the tolerance is not positive or the curve is a point.
 SectionSpline fit_section(const SectionCurve& curve, const SectionSplineOptions& options);
 
 NurbsCurve<3> to_space(const NurbsCurve<2>& curve, const PlaneFrame& frame);

@@ -82,6 +82,12 @@ TEST(FitRefusals, OfOtherOptions) {
   options.fairness = -1.0;
   EXPECT_GEOMETRY_ERROR(fit_points(section(), options), "fairness -1");
   options = {};
+  options.knot_steps = -1;
+  EXPECT_GEOMETRY_ERROR(fit_points(section(), options), "-1 steps of the knots");
+  options = {};
+  options.peak_steps = -2;
+  EXPECT_GEOMETRY_ERROR(fit_points(section(), options), "-2 steps against the largest distance");
+  options = {};
   options.corner_angle = 200.0;
   EXPECT_GEOMETRY_ERROR(fit_points(section(), options), "corner angle 200");
 }

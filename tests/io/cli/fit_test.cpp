@@ -238,6 +238,8 @@ INSTANTIATE_TEST_SUITE_P(
         bad("Parameters", "points = 'a'\nparameters = 'arc'", {"geometry.parameters: found"}),
         bad("Knots", "points = 'a'\nknots = 'random'", {"geometry.knots: found"}),
         bad("Corrections", "points = 'a'\ncorrections = -1", {"geometry.corrections: found -1"}),
+        bad("KnotSteps", "points = 'a'\nknot_steps = -1", {"geometry.knot_steps: found -1"}),
+        bad("PeakSteps", "points = 'a'\npeak_steps = 1.5", {"geometry.peak_steps: found"}),
         bad("Fairness", "points = 'a'\nfairness = -1", {"geometry.fairness: found -1"}),
         bad("CornerAngle", "points = 'a'\ncorner_angle = 200", {"geometry.corner_angle: found 200"}),
         bad("Order", "points = 'a'\norder = 'sorted'", {"geometry.order: found"}),
