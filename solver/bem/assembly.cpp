@@ -72,7 +72,8 @@ Eigen::MatrixXd Assembler<Dim>::load_potentials(double tolerance, int threads) c
   if (problem_->loads.empty()) return Eigen::MatrixXd::Zero(components_, space_->function_count());
   std::vector<Target<Dim>> targets;
   for (int i = 0; i < space_->function_count(); ++i) targets.push_back(target(i));
-  return domain_potentials<Dim>(problem_->loads, space_->table, *rules_, targets, {tolerance, threads});
+  return domain_potentials<Dim>(problem_->loads, space_->table, *rules_, targets, {tolerance, threads},
+                                space_->coarse.get());
 }
 
 template <int Dim>

@@ -11,6 +11,7 @@
 #include "geometry/vocabulary.h"
 #include "quadrature/rim.h"
 #include "quadrature/target_rules.h"
+#include "solver/bem/coarse_table.h"
 #include "solver/bem/kernels.h"
 
 /// Loads in the domain, brought to the boundary by the radial integration method with the pole at the target x. With
@@ -149,11 +150,13 @@ struct LoadOptions {
 /// int_Omega U(x, z) b(z) dOmega of all loads together at every target (of temperatures everything, the uniform rise
 /// too): components x targets. `rules` are those of the caller's other integrals. Where finer ones disagree with them
 /// at some of the targets these are used, on parts of the elements if the load has peaks; and adaptive integration if
-/// all of them disagree (a load with kinks). Throws NumericalError as the loads do.
+/// all of them disagree (a load with kinks). If there is a coarse form of the table rays run to its nodes alone.
+/// Throws NumericalError as the loads do.
 template <int Dim>
 Eigen::MatrixXd domain_potentials(const Loads<Dim>& loads, const geometry::ElementTable<Dim>& table,
                                   const quadrature::TargetRules<Dim>& rules,
-                                  std::span<const quadrature::Target<Dim>> targets, const LoadOptions& options = {});
+                                  std::span<const quadrature::Target<Dim>> targets, const LoadOptions& options = {},
+                                  const CoarseTable<Dim>* coarse = nullptr);
 
 /// Potentials without the uniform rise, and their derivatives, at points inside, for representation formulas.
 struct DomainJets {
@@ -167,7 +170,7 @@ struct DomainJets {
 template <int Dim>
 DomainJets domain_jets(const Loads<Dim>& loads, const geometry::ElementTable<Dim>& table,
                        const quadrature::TargetRules<Dim>& rules, std::span<const quadrature::Target<Dim>> targets,
-                       const LoadOptions& options = {});
+                       const LoadOptions& options = {}, const CoarseTable<Dim>* coarse = nullptr);
 
 /// int_Omega b dOmega, and for forces int (z - point) x b dOmega (1 entry in the plane, 3 in space, none for sources).
 struct LoadResultant {

@@ -206,8 +206,14 @@ class LoadIntegrals {
  public:
   LoadIntegrals(const Loads<Dim>& loads, const geometry::ElementTable<Dim>& table,
                 const quadrature::TargetRules<Dim>& rules, std::span<const Target<Dim>> targets, Part part,
-                const LoadOptions& options)
-      : loads_(loads), table_(table), rules_(rules), targets_(targets), part_(part), options_(options) {
+                const LoadOptions& options, const CoarseTable<Dim>* coarse)
+      : loads_(loads),
+        table_(table),
+        rules_(rules),
+        targets_(targets),
+        part_(part),
+        options_(options),
+        coarse_(coarse) {
     const auto threads = static_cast<std::size_t>(quadrature::thread_count(options.threads));
     for (std::size_t i = 0; i < threads; ++i) {
       sums_.push_back(std::make_unique<LoadSums<Dim>>(loads, part));
@@ -257,7 +263,8 @@ class LoadIntegrals {
 
   Values<Dim> value(const Choice& choice, const Target<Dim>& target, int thread) {
     if (!choice.rules) return adaptive(choice, target, thread);
-    const Target<Dim> own_target = choice.divided ? choice.divided->target(target) : target;
+    const Target<Dim> on_whole = coarse_ ? coarse_->target(target) : target;
+    const Target<Dim> own_target = choice.divided ? choice.divided->target(on_whole) : on_whole;
     Values<Dim> sum = Values<Dim>::Zero();
     for (std::size_t e = 0; e < choice.elements; ++e) {
       const auto element = static_cast<int>(e);
@@ -303,11 +310,13 @@ class LoadIntegrals {
 
   Choice rules_of_degree(int degree, const std::shared_ptr<const DividedTable<Dim>>& divided,
                          const std::shared_ptr<const PeakTargets<Dim>>& peaks) const {
-    const geometry::ElementTable<Dim>& table = divided ? divided->table() : table_;
+    const geometry::ElementTable<Dim>& table = divided ? divided->table() : whole_table();
     const typename quadrature::TargetRules<Dim>::Options options{0.1 * options_.tolerance, degree};
     auto rules = std::make_shared<const quadrature::TargetRules<Dim>>(table, options);
     return {rules.get(), table.elements.size(), divided, peaks, rules, {}, Values<Dim>::Zero()};
   }
+
+  const geometry::ElementTable<Dim>& whole_table() const { return coarse_ ? coarse_->table() : table_; }
 
   /// A part of the domain's size that elements do not exceed if there are peaks: most have one hard place at the most.
   static constexpr double part_with_peaks = 1.0 / 6.0;
@@ -326,8 +335,10 @@ class LoadIntegrals {
     Choice choice{&rules_, table_.elements.size(), nullptr, nullptr, nullptr, {}, Values<Dim>::Zero()};
     std::vector<int> degrees{8, 14, 20};
     if (std::isfinite(length)) {
-      divided = std::make_shared<const DividedTable<Dim>>(table_, length);
+      divided = std::make_shared<const DividedTable<Dim>>(whole_table(), length);
       if (!places.empty()) peaks = std::make_shared<const PeakTargets<Dim>>(divided->table(), std::move(places));
+    }
+    if (coarse_ || divided) {
       choice = rules_of_degree(8, divided, peaks);
       degrees = {14, 20, 26};
     }
@@ -354,6 +365,8 @@ class LoadIntegrals {
   std::span<const Target<Dim>> targets_;
   Part part_;
   LoadOptions options_;
+  /// Null if there is none.
+  const CoarseTable<Dim>* coarse_;
   std::vector<std::unique_ptr<LoadSums<Dim>>> sums_;
   std::vector<std::unique_ptr<quadrature::NodeBuffer<Dim>>> buffers_;
 };
@@ -363,10 +376,10 @@ class LoadIntegrals {
 template <int Dim>
 Eigen::MatrixXd domain_potentials(const Loads<Dim>& loads, const geometry::ElementTable<Dim>& table,
                                   const quadrature::TargetRules<Dim>& rules, std::span<const Target<Dim>> targets,
-                                  const LoadOptions& options) {
+                                  const LoadOptions& options, const CoarseTable<Dim>* coarse) {
   if (loads.empty() || targets.empty())
     return Eigen::MatrixXd::Zero(loads.empty() ? 0 : loads.front()->components(), Eigen::Index(targets.size()));
-  LoadIntegrals<Dim> integrals(loads, table, rules, targets, Part::potential, options);
+  LoadIntegrals<Dim> integrals(loads, table, rules, targets, Part::potential, options, coarse);
   Eigen::MatrixXd result = integrals.run();
   const bool thermal = std::any_of(loads.begin(), loads.end(), [](const auto& load) { return load->is_thermal(); });
   if (thermal) integrals.add_uniform(result);
@@ -376,11 +389,11 @@ Eigen::MatrixXd domain_potentials(const Loads<Dim>& loads, const geometry::Eleme
 template <int Dim>
 DomainJets domain_jets(const Loads<Dim>& loads, const geometry::ElementTable<Dim>& table,
                        const quadrature::TargetRules<Dim>& rules, std::span<const Target<Dim>> targets,
-                       const LoadOptions& options) {
+                       const LoadOptions& options, const CoarseTable<Dim>* coarse) {
   const auto count = static_cast<Eigen::Index>(targets.size());
   if (loads.empty() || targets.empty())
     return {Eigen::MatrixXd(0, count), Eigen::MatrixXd(0, count), Eigen::VectorXd::Zero(count)};
-  LoadIntegrals<Dim> integrals(loads, table, rules, targets, Part::jet, options);
+  LoadIntegrals<Dim> integrals(loads, table, rules, targets, Part::jet, options, coarse);
   const Eigen::MatrixXd both = integrals.run();
   const Eigen::Index components = loads.front()->components();
   DomainJets jets{both.topRows(components), both.bottomRows(Dim * components), Eigen::VectorXd(count)};
@@ -391,13 +404,13 @@ DomainJets domain_jets(const Loads<Dim>& loads, const geometry::ElementTable<Dim
 
 template Eigen::MatrixXd domain_potentials(const Loads<2>&, const geometry::ElementTable<2>&,
                                            const quadrature::TargetRules<2>&, std::span<const Target<2>>,
-                                           const LoadOptions&);
+                                           const LoadOptions&, const CoarseTable<2>*);
 template Eigen::MatrixXd domain_potentials(const Loads<3>&, const geometry::ElementTable<3>&,
                                            const quadrature::TargetRules<3>&, std::span<const Target<3>>,
-                                           const LoadOptions&);
+                                           const LoadOptions&, const CoarseTable<3>*);
 template DomainJets domain_jets(const Loads<2>&, const geometry::ElementTable<2>&, const quadrature::TargetRules<2>&,
-                                std::span<const Target<2>>, const LoadOptions&);
+                                std::span<const Target<2>>, const LoadOptions&, const CoarseTable<2>*);
 template DomainJets domain_jets(const Loads<3>&, const geometry::ElementTable<3>&, const quadrature::TargetRules<3>&,
-                                std::span<const Target<3>>, const LoadOptions&);
+                                std::span<const Target<3>>, const LoadOptions&, const CoarseTable<3>*);
 
 }  // namespace isorim::solver

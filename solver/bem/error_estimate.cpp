@@ -101,8 +101,8 @@ class ResidualEstimator {
     collect_samples();
     std::vector<quadrature::Target<Dim>> targets;
     for (const Sample<Dim>& sample : samples_) targets.push_back(sample.target);
-    const Eigen::MatrixXd loads =
-        domain_potentials<Dim>(problem_.loads, space_.table, rules_, targets, {options_.tolerance, options_.threads});
+    const Eigen::MatrixXd loads = domain_potentials<Dim>(problem_.loads, space_.table, rules_, targets,
+                                                         {options_.tolerance, options_.threads}, space_.coarse.get());
     std::vector<double> squares(samples_.size());
     quadrature::parallel_for(samples_.size(), options_.threads, [&](std::size_t i, int thread) {
       Eigen::VectorXd residual = equation(targets[i], *rooms_[static_cast<std::size_t>(thread)]);

@@ -59,7 +59,8 @@ class Evaluator {
     }
     std::vector<quadrature::Target<Dim>> targets;
     for (const std::size_t i : inside) targets.push_back(target(i));
-    loads_ = domain_jets<Dim>(problem_.loads, space_.table, rules_, targets, {options_.tolerance, options_.threads});
+    loads_ = domain_jets<Dim>(problem_.loads, space_.table, rules_, targets, {options_.tolerance, options_.threads},
+                              space_.coarse.get());
     quadrature::parallel_for(inside.size(), options_.threads, [&](std::size_t k, int thread) {
       evaluate_inside(inside[k], static_cast<Eigen::Index>(k), *threads_[static_cast<std::size_t>(thread)]);
     });

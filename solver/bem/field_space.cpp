@@ -475,6 +475,7 @@ FieldSpace<Dim> field_space(const OrientedBoundary<Dim>& oriented, const Discret
     first += count;
   }
   set_bodies(oriented, table, space);
+  space.coarse = coarse_table(boundary, space.table);
   return space;
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,6 +17,7 @@
 #include "geometry/bezier/element_table.h"
 #include "geometry/topology/orientation.h"
 #include "geometry/vocabulary.h"
+#include "solver/bem/coarse_table.h"
 
 namespace isorim::solver {
 
@@ -72,6 +74,8 @@ template <int Dim>
 struct FieldSpace {
   /// The elements of the analysis with their geometry: those of the refined patches, exact copies of the shape.
   geometry::ElementTable<Dim> table;
+  /// The same boundary in its own elements; null if those of the analysis are no smaller.
+  std::shared_ptr<const CoarseTable<Dim>> coarse;
   /// One for each element of the table.
   std::vector<FieldElement<Dim>> elements;
   std::vector<std::int32_t> functions;

@@ -21,8 +21,8 @@ enum class SolveMethod {
 
 struct SolveOptions {
   /// Scalar unknowns of potentials, twice as many of displacements. In space compressed matrices take less time than
-  /// dense ones from 2500 (7500) on with a tolerance of 1e-6, and less memory long before (pictures/bem_scaling.csv);
-  /// with 1e-10 potentials of 2246 unknowns still take a quarter more.
+  /// dense ones from 2500 (5000) on with a tolerance of 1e-6, and less memory long before (pictures/bem_scaling.csv);
+  /// with 1e-10 from 3000 (7000) on.
   static constexpr int automatic_limit = 4000;
   SolveMethod method = SolveMethod::automatic;
   /// Relative: of the compression, of the iterations, and what the quadrature aims at.

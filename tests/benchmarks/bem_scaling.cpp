@@ -208,7 +208,7 @@ std::vector<Run> all_runs() {
     both("torus", cuts, refine);
   for (const auto& [cuts, refine] : std::vector<std::pair<int, int>>{{1, 4}, {3, 3}, {1, 5}})
     both("cube", cuts, refine);
-  for (const auto& [cuts, refine] : std::vector<std::pair<int, int>>{{1, 3}, {3, 2}, {1, 4}})
+  for (const auto& [cuts, refine] : std::vector<std::pair<int, int>>{{1, 3}, {3, 2}, {7, 1}, {1, 4}})
     both("elasticity", cuts, refine);
   for (int refine = 1; refine <= 4; ++refine) {
     for (int degree = 1; degree <= 8; ++degree) {
