@@ -109,4 +109,5 @@ def main():
         report(milliseconds, found, extra, results, shape + 1, True)
 
 
-main()
+if __name__ == "__main__":
+    main()

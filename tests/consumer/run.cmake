@@ -1,5 +1,6 @@
 # Installs the build tree BUILD below WORK, moves the installation elsewhere, builds the consumer project against it
 # and runs its programs: cmake -D BUILD=... -D WORK=... -D TYPE=... -D FLAGS=... -P run.cmake
+# With -D PYTHON=... -D PACKAGE=... (the package's folder below the prefix) Python runs its examples, too.
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
@@ -25,3 +26,12 @@ foreach(result IN ITEMS boundary.vtu results.h5 results.json)
   endif()
 endforeach()
 run(${WORK}/moved/bin/isorim --version)
+
+if(PYTHON)
+  file(GLOB examples ${CMAKE_CURRENT_LIST_DIR}/../../io/python/examples/*.py)
+  foreach(example IN LISTS examples)
+    run(${CMAKE_COMMAND} -E env PYTHONPATH=${WORK}/moved/${PACKAGE} ${PYTHON} ${example} WORKING_DIRECTORY ${WORK})
+  endforeach()
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${WORK}/moved/${PACKAGE} ${PYTHON} -c
+      "import isorim; assert isorim.__file__.startswith('${WORK}/moved/${PACKAGE}'), isorim.__file__")
+endif()

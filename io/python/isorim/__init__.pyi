@@ -6,9 +6,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Path = str | os.PathLike[str]
-Floats = NDArray[np.float64]
-Integrand = str | Callable[[Floats], ArrayLike] | Callable[[Floats, Floats], ArrayLike]
+_Path = str | os.PathLike[str]
+_Floats = NDArray[np.float64]
+_Integrand = str | Callable[[_Floats], ArrayLike] | Callable[[_Floats, _Floats], ArrayLike]
 
 __version__: str
 __all__: list[str]
@@ -34,27 +34,28 @@ class Integral:
 @dataclass(frozen=True)
 class Evaluation:
     location: NDArray[np.int8]
-    value: Floats
-    gradient: Floats
+    value: _Floats
+    gradient: _Floats
 
 @dataclass(frozen=True)
 class BoundaryFields:
     element: NDArray[np.int32]
     patch: NDArray[np.int32]
-    points: Floats
-    normals: Floats
-    weight: Floats
-    value: Floats
-    flux: Floats
+    points: _Floats
+    normals: _Floats
+    weight: _Floats
+    value: _Floats
+    flux: _Floats
 
 @dataclass(frozen=True)
 class Fit:
     curve: dict[str, Any]
-    parameters: Floats
-    distances: Floats
+    parameters: _Floats
+    distances: _Floats
     tolerance_met: bool
 
 class Boundary:
+    def __init__(self, case: object) -> None: ...
     @property
     def title(self) -> str: ...
     @property
@@ -72,7 +73,7 @@ class Boundary:
     ) -> dict[str, Quantity]: ...
     def integrate(
         self,
-        integrand: Integrand,
+        integrand: _Integrand,
         *,
         over: Literal["domain", "boundary"] = ...,
         tolerance: float = ...,
@@ -88,21 +89,21 @@ class Boundary:
         fit_tolerance: float = ...,
         threads: int = ...,
     ) -> list[dict[str, Any]]: ...
-    def run(self, *, output: Path | None = ..., threads: int = ...) -> dict[str, Any]: ...
+    def run(self, *, output: _Path | None = ..., threads: int = ...) -> dict[str, Any]: ...
     def boundary_fields(self) -> BoundaryFields: ...
     def evaluate(self, points: ArrayLike, *, threads: int = ...) -> Evaluation: ...
-    def write(self, path: Path, *, unit: str | None = ...) -> None: ...
-    def write_solution(self, path: Path) -> None: ...
+    def write(self, path: _Path, *, unit: str | None = ...) -> None: ...
+    def write_solution(self, path: _Path) -> None: ...
 
 def load(
-    source: Path | Mapping[str, Any], *, overrides: Sequence[str] = ..., folder: Path = ..., threads: int = ...
+    source: _Path | Mapping[str, Any], *, overrides: Sequence[str] = ..., folder: _Path = ..., threads: int = ...
 ) -> Boundary: ...
 def run(
-    source: Path | Mapping[str, Any],
+    source: _Path | Mapping[str, Any],
     *,
     overrides: Sequence[str] = ...,
-    folder: Path = ...,
-    output: Path | None = ...,
+    folder: _Path = ...,
+    output: _Path | None = ...,
     threads: int = ...,
 ) -> dict[str, Any]: ...
 def nurbs_curve(
