@@ -48,6 +48,24 @@ void fit(MeasuredSection& result, const geometry::SectionSplineOptions& options)
   for (const geometry::SectionCurve& curve : section.touching) result.touching.push_back(fitted(curve));
 }
 
+/// The least of a few distances by which the plane has to be moved along its normal to meet nothing; absent if it takes
+/// more than 1e-4 of the boundary's size.
+std::optional<double> distance_to_nothing(const geometry::PlaneCutter& cutter, const geometry::PlaneFrame& plane) {
+  for (const double part : {1e-9, 1e-8, 1e-7, 1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4}) {
+    for (const double sign : {-1.0, 1.0}) {
+      const double distance = part * cutter.size();
+      geometry::PlaneFrame moved = plane;
+      moved.origin += sign * distance * plane.normal;
+      try {
+        if (cutter.section(moved).is_empty()) return distance;
+      } catch (const Error&) {
+        // Still too near.
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 MeasuredSection measured(const geometry::PlaneCutter& cutter, const geometry::PlaneFrame& plane,
                          const PlaneSectionOptions& options) {
   MeasuredSection result;
@@ -57,6 +75,12 @@ MeasuredSection measured(const geometry::PlaneCutter& cutter, const geometry::Pl
   } catch (const Error& error) {
     result = {};
     result.failure = error.what();
+    result.touches_within = distance_to_nothing(cutter, plane);
+    if (result.touches_within)
+      result.failure = fmt::format(
+          "the plane only touches the boundary, which ends within {:.2g} of it: a degenerate "
+          "section",
+          *result.touches_within);
     return result;
   }
   if (options.fit_tolerance > 0.0) fit(result, {.tolerance = options.fit_tolerance * cutter.size()});

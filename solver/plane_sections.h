@@ -31,6 +31,9 @@ struct MeasuredSection {
   /// Absent if the plane could not be cut; then `failure` says why.
   std::optional<geometry::PlaneSection> section;
   std::string failure;
+  /// Of a plane that could not be cut since it only touches the boundary: it ends within this distance of the plane, so
+  /// what the two have in common is a degenerate section.
+  std::optional<double> touches_within = std::nullopt;
   /// Of the region that the loops bound: zero without loops.
   quadrature::Estimate area;
   /// Of all loops.

@@ -131,6 +131,8 @@ class Writer {
   std::string content(const Drawing& drawing, const Point2& origin, std::map<std::string, int>& properties);
   std::string resources(const std::map<std::string, int>& properties) const;
   void add_page(double width, double height, const std::string& content, const std::string& resources);
+  /// `sheet`: the object that draws the sheet.
+  void add_map(const AssemblyMap& map, const std::string& sheet);
 
   PdfDocument document_;
   int pages_ = 0;
@@ -180,6 +182,15 @@ void Writer::add_page(double width, double height, const std::string& content, c
       number(width * points_per_mm, 4), number(height * points_per_mm, 4), resources, pdf_reference(stream))));
 }
 
+void Writer::add_map(const AssemblyMap& map, const std::string& sheet) {
+  std::map<std::string, int> properties;
+  const std::string marks = content(map.marks, Point2::Zero(), properties);
+  const std::string page = fmt::format("q\n{0} 0 0 {0} {1} {2} cm\n/Sheet Do\nQ\n{3}", number(map.factor, 9),
+                                       coordinate(map.place.x()), coordinate(map.place.y()), marks);
+  add_page(map.paper_width, map.paper_height, page,
+           resources(properties) + fmt::format(" /XObject << /Sheet {} >>", sheet));
+}
+
 void Writer::add(const Sheet& sheet, const std::optional<Tiling>& tiling) {
   require_page(sheet);
   if (!tiling && std::max(sheet.width(), sheet.height()) > longest_pdf_side) {
@@ -193,7 +204,9 @@ void Writer::add(const Sheet& sheet, const std::optional<Tiling>& tiling) {
   const std::string form = fmt::format("/Type /XObject /Subtype /Form /BBox [0 0 {} {}] /Resources << {} >>",
                                        coordinate(sheet.width()), coordinate(sheet.height()), resources(properties));
   const std::string object = pdf_reference(document_.add_stream(form, drawn));
-  for (const Tile& tile : tiles_of(sheet, *tiling)) {
+  const std::vector<Tile> tiles = tiles_of(sheet, *tiling);
+  if (tiles.size() > 1) add_map(assembly_map(sheet, tiles, *tiling), object);
+  for (const Tile& tile : tiles) {
     const geometry::Vector2 size = tile.part.upper - tile.part.lower;
     const geometry::Vector2 shift = tile.place - (tile.part.lower - sheet.page.lower);
     std::map<std::string, int> mark_properties;

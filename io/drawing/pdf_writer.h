@@ -14,7 +14,8 @@ namespace isorim::io::drawing {
 struct PdfOptions {
   /// Of the document; by default that of the first sheet.
   std::string title = {};
-  /// Each sheet as pages of this paper; by default as one page of its own size.
+  /// Each sheet as pages of this paper, where there are several after a map of them; by default as one page of its own
+  /// size.
   std::optional<Tiling> tiling = std::nullopt;
 };
 

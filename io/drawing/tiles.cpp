@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
 #include "io/drawing/annotations.h"
+#include "io/drawing/ink.h"
 #include "io/drawing/text_metrics.h"
 
 namespace isorim::io::drawing {
@@ -78,11 +81,37 @@ Grid best_grid(const Sheet& sheet, const Tiling& tiling) {
   return best;
 }
 
+std::string name_of(int row, int column) {
+  return fmt::format("{}{}", row_name(row), column + 1);
+}
+
+/// Which pages of a grid there are.
+class Pages {
+ public:
+  explicit Pages(const Grid& grid) : grid_(grid), has_(static_cast<std::size_t>(grid.count()), false) {}
+
+  void take(int row, int column) {
+    has_[index(row, column)] = true;
+    ++count_;
+  }
+  bool has(int row, int column) const {
+    return row >= 0 && row < grid_.rows && column >= 0 && column < grid_.columns && has_[index(row, column)];
+  }
+  int count() const { return count_; }
+
+ private:
+  std::size_t index(int row, int column) const { return static_cast<std::size_t>(row * grid_.columns + column); }
+
+  const Grid& grid_;
+  std::vector<bool> has_;
+  int count_ = 0;
+};
+
 /// The marks of one tile, in the coordinates of its paper.
 class Marks {
  public:
-  Marks(const Sheet& sheet, const Grid& grid, const Tiling& tiling, Tile& tile)
-      : sheet_(sheet), grid_(grid), tiling_(tiling), tile_(tile) {
+  Marks(const Sheet& sheet, const Grid& grid, const Pages& pages, const Tiling& tiling, Tile& tile)
+      : sheet_(sheet), grid_(grid), pages_(pages), tiling_(tiling), tile_(tile) {
     lines_ = tile.marks.add_layer({"tile", {120, 120, 120}, 0.13, LineType::continuous});
     cuts_ = tile.marks.add_layer({"cut here", {120, 120, 120}, 0.13, LineType::dashed});
     label_ = tile.marks.add_layer({"tile label", black, 0.18, LineType::continuous});
@@ -93,20 +122,19 @@ class Marks {
     if (grid_.count() == 1) return;
     add_map();
     for (const int side : {-1, 1}) {
-      if (has(tile_.row, tile_.column + side)) add_join(side, Vector2::UnitX(), tile_.row, tile_.column + side);
-      if (has(tile_.row + side, tile_.column)) add_join(-side, Vector2::UnitY(), tile_.row + side, tile_.column);
+      if (pages_.has(tile_.row, tile_.column + side)) add_join(side, Vector2::UnitX(), tile_.row, tile_.column + side);
+      if (pages_.has(tile_.row + side, tile_.column)) add_join(-side, Vector2::UnitY(), tile_.row + side, tile_.column);
     }
   }
 
  private:
-  bool has(int row, int column) const { return row >= 0 && row < grid_.rows && column >= 0 && column < grid_.columns; }
-  std::string name(int row, int column) const { return fmt::format("{}{}", row_name(row), column + 1); }
   void add_foot();
   void add_map();
   void add_join(int side, const Vector2& axis, int row, int column);
 
   const Sheet& sheet_;
   const Grid& grid_;
+  const Pages& pages_;
   const Tiling& tiling_;
   Tile& tile_;
   std::size_t lines_ = 0;
@@ -130,33 +158,34 @@ void Marks::add_foot() {
   const double base = 0.5 * tiling_.foot - 2.0;
   const double bar = right - (grid_.count() == 1 ? 0.0 : map_size + 6.0) - bar_length - text_width("50 mm", 1.8);
   add_scale_bar(tile_.marks, label_, {bar, base}, bar_length, "50 mm", 1.8);
-  const std::string place =
-      grid_.count() == 1 ? "sheet 1 of 1"
-                         : fmt::format("row {}, column {}, sheet {} of {}", row_name(tile_.row), tile_.column + 1,
-                                       tile_.row * grid_.columns + tile_.column + 1, grid_.count());
+  const std::string place = grid_.count() == 1 ? "sheet 1 of 1"
+                                               : fmt::format("row {}, column {}, sheet {} of {}", row_name(tile_.row),
+                                                             tile_.column + 1, tile_.number, pages_.count());
   const double room = bar - left - 4.0;
   tile_.marks.add(label_, Text{fitted(sheet_.title, room, text_height), {left, base + 4.0}, text_height});
   tile_.marks.add(label_, Text{fitted(place + "; print at 100 %", room, text_height), {left, base}, text_height});
 }
 
-/// The pages as boxes in the corner, this one full.
+/// The pages that there are as boxes in the corner, this one full.
 void Marks::add_map() {
   const double cell = map_size / std::max(grid_.columns, grid_.rows);
   const double height = cell * grid_.rows;
   const Point2 lower(grid_.paper_width - tiling_.margin - cell * grid_.columns, 0.5 * (tiling_.foot - height));
-  const Point2 own = lower + cell * Vector2(tile_.column, grid_.rows - 1 - tile_.row);
+  const auto box = [&](int row, int column) {
+    const Point2 corner = lower + cell * Vector2(column, grid_.rows - 1 - row);
+    return outline({corner, corner + Vector2(cell, cell)});
+  };
+  const Polyline own = box(tile_.row, tile_.column);
   Chain square;
-  const Polyline box = outline({own, own + Vector2(cell, cell)});
   for (Eigen::Index i = 0; i < 4; ++i) {
     geometry::Points<2> side(2, 2);
-    side << box.points.col(i), box.points.col((i + 1) % 4);
+    side << own.points.col(i), own.points.col((i + 1) % 4);
     square.push_back(geometry::NurbsCurve<2>::from_points(geometry::KnotVector::bezier(1), side));
   }
   tile_.marks.add(lines_, Fill{{square}, {120, 120, 120}});
-  for (int i = 0; i <= grid_.columns; ++i)
-    tile_.marks.add(lines_, line(lower + Vector2(i * cell, 0.0), lower + Vector2(i * cell, height)));
-  for (int i = 0; i <= grid_.rows; ++i)
-    tile_.marks.add(lines_, line(lower + Vector2(0.0, i * cell), lower + Vector2(cell * grid_.columns, i * cell)));
+  for (int row = 0; row < grid_.rows; ++row)
+    for (int column = 0; column < grid_.columns; ++column)
+      if (pages_.has(row, column)) tile_.marks.add(lines_, box(row, column));
 }
 
 /// The line in the middle of the strip that the tile shares with a neighbour: to the right (axis x, side 1), above
@@ -173,8 +202,8 @@ void Marks::add_join(int side, const Vector2& axis, int row, int column) {
   for (const double fraction : {0.2, 0.8})
     add_registration_mark(tile_.marks, lines_, place(first + fraction * (last - first)));
   const double beyond = 0.25 * grid_.overlap * side;
-  tile_.marks.add(lines_, Text{name(row, column), place(0.5 * (first + last)) + beyond * axis, 2.0, Horizontal::centre,
-                               Vertical::middle});
+  tile_.marks.add(lines_, Text{name_of(row, column), place(0.5 * (first + last)) + beyond * axis, 2.0,
+                               Horizontal::centre, Vertical::middle});
 }
 
 }  // namespace
@@ -186,31 +215,107 @@ std::string row_name(int row) {
   return name;
 }
 
+namespace {
+
+/// Where the page at a place in the grid begins.
+class Places {
+ public:
+  /// The pages together show more than the sheet: what is left over lies evenly round it.
+  Places(const Sheet& sheet, const Grid& grid) : grid_(grid) {
+    const Vector2 shown = grid.window + Vector2(grid.columns - 1, grid.rows - 1).cwiseProduct(grid.step());
+    corner_ = 0.5 * (sheet.page.lower + sheet.page.upper) - 0.5 * shown;
+  }
+
+  Point2 lower(int row, int column) const {
+    return corner_ + Vector2(column, grid_.rows - 1 - row).cwiseProduct(grid_.step());
+  }
+  /// What is left of a page when it is cut where it meets its neighbours.
+  Rectangle cell(int row, int column) const {
+    const double half = 0.5 * grid_.overlap;
+    const Point2 from = lower(row, column);
+    const Point2 to = from + grid_.window;
+    return {from + half * Vector2(column > 0 ? 1.0 : 0.0, row + 1 < grid_.rows ? 1.0 : 0.0),
+            to - half * Vector2(column + 1 < grid_.columns ? 1.0 : 0.0, row > 0 ? 1.0 : 0.0)};
+  }
+
+ private:
+  const Grid& grid_;
+  Point2 corner_;
+};
+
+/// All, if nothing is drawn anywhere or there is one page only.
+Pages inked_pages(const Sheet& sheet, const Grid& grid, const Places& places) {
+  const Ink ink(sheet.drawing);
+  const bool takes_all = grid.count() == 1 || !ink.meets(sheet.page);
+  Pages pages(grid);
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column)
+      if (takes_all || ink.meets(places.cell(row, column))) pages.take(row, column);
+  return pages;
+}
+
+}  // namespace
+
 std::vector<Tile> tiles_of(const Sheet& sheet, const Tiling& tiling) {
   require_page(sheet);
   check(tiling);
   const Grid grid = best_grid(sheet, tiling);
-  // The pages together show more than the sheet: what is left over lies evenly round it.
-  const Vector2 shown = grid.window + Vector2(grid.columns - 1, grid.rows - 1).cwiseProduct(grid.step());
-  const Point2 centre = 0.5 * (sheet.page.lower + sheet.page.upper);
-  const Point2 corner = centre - 0.5 * shown;
+  const Places places(sheet, grid);
+  const Pages pages = inked_pages(sheet, grid, places);
   std::vector<Tile> tiles;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
+      if (!pages.has(row, column)) continue;
       Tile tile;
+      tile.number = static_cast<int>(tiles.size()) + 1;
       tile.row = row;
       tile.column = column;
       tile.paper_width = grid.paper_width;
       tile.paper_height = grid.paper_height;
-      const Point2 lower = corner + Vector2(column, grid.rows - 1 - row).cwiseProduct(grid.step());
+      const Point2 lower = places.lower(row, column);
       tile.part.lower = lower.cwiseMax(sheet.page.lower);
       tile.part.upper = (lower + grid.window).cwiseMin(sheet.page.upper);
       tile.place = Point2(tiling.margin, tiling.foot) + (tile.part.lower - lower);
-      Marks(sheet, grid, tiling, tile).draw();
+      Marks(sheet, grid, pages, tiling, tile).draw();
       tiles.push_back(std::move(tile));
     }
   }
   return tiles;
+}
+
+AssemblyMap assembly_map(const Sheet& sheet, const std::vector<Tile>& tiles, const Tiling& tiling) {
+  AssemblyMap map;
+  const auto room_on = [&](double width, double height) {
+    return Vector2(width - 2.0 * tiling.margin, height - tiling.margin - tiling.foot);
+  };
+  const auto factor_on = [&](double width, double height) {
+    return room_on(width, height).cwiseQuotient(sheet.page.upper - sheet.page.lower).minCoeff();
+  };
+  map.paper_width = tiling.paper_width;
+  map.paper_height = tiling.paper_height;
+  if (factor_on(map.paper_height, map.paper_width) > factor_on(map.paper_width, map.paper_height))
+    std::swap(map.paper_width, map.paper_height);
+  const Vector2 room = room_on(map.paper_width, map.paper_height);
+  const Vector2 size = sheet.page.upper - sheet.page.lower;
+  map.factor = room.cwiseQuotient(size).minCoeff();
+  map.place = Point2(tiling.margin, tiling.foot) + 0.5 * (room - map.factor * size);
+  const std::size_t lines = map.marks.add_layer({"tile", {120, 120, 120}, 0.13, LineType::continuous});
+  const std::size_t label = map.marks.add_layer({"tile label", black, 0.18, LineType::continuous});
+  const auto on_paper = [&](const Point2& point) {
+    return Point2(map.place + map.factor * (point - sheet.page.lower));
+  };
+  for (const Tile& tile : tiles) {
+    const Rectangle box{on_paper(tile.part.lower), on_paper(tile.part.upper)};
+    map.marks.add(lines, outline(box));
+    map.marks.add(label, Text{name_of(tile.row, tile.column), 0.5 * (box.lower + box.upper), 5.0, Horizontal::centre,
+                              Vertical::middle});
+  }
+  const double base = 0.5 * tiling.foot - 2.0;
+  map.marks.add(label, Text{fitted(sheet.title, room.x(), text_height), {tiling.margin, base + 4.0}, text_height});
+  map.marks.add(label, Text{fmt::format("how the {} sheets go together; not to scale", tiles.size()),
+                            {tiling.margin, base},
+                            text_height});
+  return map;
 }
 
 }  // namespace isorim::io::drawing

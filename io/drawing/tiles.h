@@ -22,6 +22,8 @@ struct Tiling {
 
 /// One page of a sheet.
 struct Tile {
+  /// From 1, among those that there are.
+  int number = 1;
   /// From 0; row 0 is at the top, column 0 on the left.
   int row = 0;
   int column = 0;
@@ -33,16 +35,31 @@ struct Tile {
   /// Where part.lower lies on the paper.
   geometry::Point2 place = geometry::Point2::Zero();
   /// In the coordinates of the paper: the label "row B, column 2, sheet 5 of 12", a scale bar of 50 mm, a map of the
-  /// pages, and where there are neighbours the lines along which to cut, each with two registration crosses that lie
-  /// on both pages, and the neighbour's name.
+  /// pages that there are, and where there are neighbours the lines along which to cut, each with two registration
+  /// crosses that lie on both pages, and the neighbour's name.
   Drawing marks;
 };
 
 /// The tiles, row by row from the top. Neighbours share a strip as wide as the overlap, in the middle of which the
-/// line to cut lies; a sheet that fits on one page is put in its middle. Throws InputError as require_page(), or if a
-/// length of the tiling is not finite or negative, or the paper is too small for margins and overlap, or if there were
-/// more than 10000 pages.
+/// line to cut lies; a sheet that fits on one page is put in its middle. Pages on which, up to the lines to cut,
+/// nothing is drawn are left out. Throws InputError as require_page(), or if a length of the tiling is not finite or
+/// negative, or the paper is too small for margins and overlap, or if there were more than 10000 pages.
 std::vector<Tile> tiles_of(const Sheet& sheet, const Tiling& tiling = {});
+
+/// How the pages go together: the whole sheet, small, on a page of its own, with the lines to cut and the names of the
+/// pages.
+struct AssemblyMap {
+  double paper_width = 0.0;
+  double paper_height = 0.0;
+  /// The sheet's page, its lower left corner at `place`, by this factor.
+  double factor = 1.0;
+  geometry::Point2 place = geometry::Point2::Zero();
+  /// In the coordinates of the paper.
+  Drawing marks;
+};
+
+/// Of the tiles of a sheet, more than one.
+AssemblyMap assembly_map(const Sheet& sheet, const std::vector<Tile>& tiles, const Tiling& tiling = {});
 
 /// "A", ..., "Z", "AA", ...: the name of row 0, ...
 std::string row_name(int row);

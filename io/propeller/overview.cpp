@@ -340,9 +340,9 @@ drawing::TitleBlock title_block(const PropellerFacts& facts, const std::string& 
   block.fields.emplace_back("blades",
                             fmt::format("{}, {}-handed", facts.screw.blades,
                                         facts.screw.surface.hand == geometry::Hand::right ? "right" : "left"));
-  block.fields.emplace_back("AE/A0", number(facts.area_ratios.expanded, 4));
-  block.fields.emplace_back("AD/A0, AP/A0", fmt::format("{}, {}", number(facts.area_ratios.developed, 4),
-                                                        number(facts.area_ratios.projected, 4)));
+  block.fields.emplace_back("AE/A0", fmt::format("{:.4f}", facts.area_ratios.expanded));
+  block.fields.emplace_back("AD/A0, AP/A0",
+                            fmt::format("{:.4f}, {:.4f}", facts.area_ratios.developed, facts.area_ratios.projected));
   return block;
 }
 

@@ -118,7 +118,8 @@ std::string sections_text(const std::vector<SectionFamily>& families) {
     for (std::size_t i = 0; i < family.sections.size(); ++i) {
       const MeasuredSection& measured = family.sections[i];
       if (!measured.section) {
-        table.add_row({fmt::format("{:.9g}", family.offsets[i]), "failed", "", ""});
+        table.add_row({fmt::format("{:.9g}", family.offsets[i]), measured.touches_within ? "" : "failed", "",
+                       measured.touches_within ? "degenerate: the plane only touches" : ""});
         continue;
       }
       table.add_row({fmt::format("{:.9g}", family.offsets[i]), fmt::format("{:.12g}", measured.area.value),

@@ -188,6 +188,14 @@ void write_picture(const std::filesystem::path& path, const SectionFamily& famil
   svg::write_svg(path, drawing);
 }
 
+/// What the pictures cannot show: planes that only touch.
+std::string remarks_of(const SectionFamily& family) {
+  std::vector<std::string> offsets;
+  for (std::size_t k = 0; k < family.sections.size(); ++k)
+    if (family.sections[k].touches_within) offsets.push_back(fmt::format("{:.9g}", family.offsets[k]));
+  return offsets.empty() ? "" : fmt::format(" (the plane at {} only touches)", fmt::join(offsets, ", "));
+}
+
 void write_pictures(const std::filesystem::path& folder, const SectionFamily& family) {
   std::vector<svg::Chain> all;
   const bool is_single = family.sections.size() == 1;
@@ -201,7 +209,8 @@ void write_pictures(const std::filesystem::path& folder, const SectionFamily& fa
     write_picture(folder / fmt::format("section_{}_{}.svg", family.name, k + 1), family,
                   fmt::format("{} at {:.9g}", family.name, family.offsets[k]), std::move(own), true);
   }
-  write_picture(folder / fmt::format("section_{}.svg", family.name), family, family.name, std::move(all), is_single);
+  write_picture(folder / fmt::format("section_{}.svg", family.name), family, family.name + remarks_of(family),
+                std::move(all), is_single);
 }
 
 }  // namespace

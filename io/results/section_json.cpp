@@ -80,11 +80,16 @@ Json loops_json(const SectionFamily& family, const solver::MeasuredSection& meas
   return list;
 }
 
+const char* status_of(const solver::MeasuredSection& measured) {
+  if (!measured.section) return measured.touches_within ? "touching" : "failed";
+  return measured.section->is_empty() ? "empty" : "ok";
+}
+
 Json plane_json(const SectionFamily& family, std::size_t index) {
   const solver::MeasuredSection& measured = family.sections[index];
   Json json;
   json["offset"] = number(family.offsets[index]);
-  json["status"] = measured.section ? measured.section->is_empty() ? "empty" : "ok" : "failed";
+  json["status"] = status_of(measured);
   const geometry::PlaneFrame& frame = family.planes[index];
   json["origin"] = point_json(frame.origin);
   if (!measured.section) {

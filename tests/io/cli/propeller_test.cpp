@@ -1,4 +1,8 @@
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -164,6 +168,99 @@ TEST_F(PropellerCase, TakesThePointsOfItsSections) {
   EXPECT_EQ(results()["propeller"]["control_points"], (std::vector<int>{9, 4}));
   EXPECT_NEAR(results()["propeller"]["sections"][1]["chord"].get<double>(), 0.075, 1e-12);
 }
+
+// --- Hubs and sections ------------------------------------------------------------------------------------------
+
+// The hub's volume, a truncated cone's, is exact; moulds and areas know where the blades stand.
+TEST_F(PropellerCase, StandsOnHubsThatTaper) {
+  const ProgramResult result = run_case(kaplan +
+                                        "[[geometry.hub_profile]]\ntype = 'polyline'\n"
+                                        "points = [[-100, 70], [100, 50]]\n"
+                                        "[moulds]\nheights = [58, 100]\n[drawings]\nformats = ['svg']\n" +
+                                        coarse +
+                                        "[expect]\nhub_volume = { value = 2282890.6616085833, rtol = 1e-10 }\n"
+                                        "closure_defect = { value = 0, atol = 1e-14 }\n");
+  ASSERT_EQ(result.status, 0) << result.err << result.out;
+  EXPECT_NEAR(results()["propeller"]["areas_outside_radius"].get<double>(), 60.0, 1e-12);
+  // The rectangle round what the plane z = 58 leaves of the hub under the blade; a plane at 100 misses the hub.
+  const std::string table = read_file(folder() / "out/moulds.csv");
+  const auto half_width_on = [&](int line) {
+    std::istringstream lines(table);
+    std::string text;
+    for (int i = 0; i <= line; ++i) std::getline(lines, text);
+    std::istringstream cells(text);
+    for (int i = 0; i < 6; ++i) std::getline(cells, text, ',');
+    return text.empty() ? 0.0 : std::stod(text);
+  };
+  // The blade's foot begins at X = -37 or so: the hub has a radius of about 63.7 there.
+  EXPECT_NEAR(half_width_on(1), std::sqrt(63.7 * 63.7 - 58.0 * 58.0), 1.0);
+  EXPECT_EQ(half_width_on(2), 0.0);
+}
+
+TEST_F(PropellerCase, SaysThatASectionOnlyTouchesTheTip) {
+  const ProgramResult result = run_case(kaplan + coarse +
+                                        "[[section]]\nname = 'tip'\nnormal = [0, 0, 1]\noffsets = [240, 250]\n"
+                                        "[output]\nsvg = true\n");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("degenerate: the plane only touches"));
+  EXPECT_THAT(result.err, HasSubstr("section \"tip\" at 250: the plane only touches the boundary"));
+  const nlohmann::json planes = results()["sections"]["tip"]["planes"];
+  EXPECT_EQ(planes[0]["status"], "ok");
+  EXPECT_EQ(planes[1]["status"], "touching");
+  EXPECT_THAT(read_file(folder() / "out/section_tip.svg"), HasSubstr("the plane at 250 only touches"));
+}
+
+// --- Files ----------------------------------------------------------------------------------------------------
+
+/// Six times the volume inside the triangles of a binary STL file.
+double volume_of_stl(const std::string& bytes) {
+  std::uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + 80, 4);
+  double sum = 0.0;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    std::array<float, 9> p{};
+    std::memcpy(p.data(), bytes.data() + 84 + 50 * static_cast<std::size_t>(k) + 12, 36);
+    const auto at = [&](std::size_t i) { return static_cast<double>(p[i]); };
+    sum += at(0) * (at(4) * at(8) - at(5) * at(7)) - at(1) * (at(3) * at(8) - at(5) * at(6)) +
+           at(2) * (at(3) * at(7) - at(4) * at(6));
+  }
+  return sum / 6.0;
+}
+
+/// Written as IGES and read again, with trimmed blades and hub: the same area, volume and moments. As STL: within what
+/// the tolerance of 0.05 mm costs.
+class PropellerFiles : public PropellerCase, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(PropellerFiles, KeepTheScrew) {
+  const std::string fine = "[properties]\ntolerance = 1e-10\n";
+  const std::string screw = kaplan + GetParam() + fine;
+  ASSERT_EQ(run_case(screw).status, 0);
+  const nlohmann::json own = results()["properties"];
+  ASSERT_EQ(run({"convert", (folder() / "case.toml").string(), (folder() / "screw.igs").string()}).status, 0);
+  const ProgramResult again = run_case("[geometry]\ntype = 'file'\npath = 'screw.igs'\n" + fine);
+  ASSERT_EQ(again.status, 0) << again.err;
+  const nlohmann::json all = results();
+  EXPECT_TRUE(all["geometry"]["closed"]);
+  EXPECT_LE(all["geometry"]["closure_defect"].get<double>(), 1e-12);
+  for (const char* name : {"area", "volume"}) {
+    const double value = own[name]["value"];
+    EXPECT_NEAR(all["properties"][name]["value"].get<double>(), value, 1e-9 * value) << name;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double moment = own["inertia"]["value"][i][i];
+    EXPECT_NEAR(all["properties"]["inertia"]["value"][i][i].get<double>(), moment, 1e-9 * moment);
+  }
+  write("mesh.toml", screw + "[output]\nstl_tolerance = 0.05\n");
+  ASSERT_EQ(run({"convert", (folder() / "mesh.toml").string(), (folder() / "screw.stl").string()}).status, 0);
+  const double volume = own["volume"]["value"];
+  const double area = own["area"]["value"];
+  EXPECT_NEAR(volume_of_stl(read_file(folder() / "screw.stl")), volume, 0.05 * area);
+}
+
+INSTANTIATE_TEST_SUITE_P(Hubs, PropellerFiles,
+                         ::testing::Values("hub_ends = [-60, 70]\n", "hub_ratio = 0\n",
+                                           "[[geometry.hub_profile]]\ntype = 'polyline'\n"
+                                           "points = [[-100, 70], [-10, 60], [100, 50]]\n"));
 
 // --- Edits ----------------------------------------------------------------------------------------------------
 

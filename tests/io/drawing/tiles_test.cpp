@@ -1,7 +1,10 @@
 #include "io/drawing/tiles.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -128,6 +131,82 @@ TEST(Tiles, AreLabelledInOrder) {
   }
   // The neighbours' names: the first tile has one on the right and one below.
   EXPECT_THAT(texts_of(tiles[0]), ::testing::IsSupersetOf({"A2", "B1"}));
+}
+
+/// Thin lines alone, so that most pages of the sheet are blank.
+Sheet mostly_blank_sheet() {
+  Drawing drawing;
+  const std::size_t layer = drawing.add_layer({"lines", black, 0.35});
+  drawing.add(layer, line({0.0, 0.0}, {900.0, 1100.0}));
+  drawing.add(layer, Path{{geometry::circular_arc(300.0, {600.0, 300.0}, 0.1, 1.3)}});
+  drawing.add(layer, Text{"corner", {20.0, 1090.0}, 3.5});
+  return {"Lines", drawing, {{-5.0, -5.0}, {905.0, 1105.0}}};
+}
+
+TEST(Tiles, LeaveOutBlankPages) {
+  const Sheet sheet = mostly_blank_sheet();
+  const auto tiles = tiles_of(sheet);
+  const auto has = [&](int row, int column) {
+    return std::ranges::any_of(tiles, [&](const Tile& t) { return t.row == row && t.column == column; });
+  };
+  const auto full = tiles_of(big_sheet(910.0, 1110.0));
+  EXPECT_LT(tiles.size(), full.size());
+  // All that is drawn is on a page, and not next to its edge only.
+  const auto shown = [&](const Point2& point) {
+    return std::ranges::any_of(tiles, [&](const Tile& tile) {
+      const auto inside = [&](double a, double low, double high, double first, double last) {
+        return (low <= first || a >= low + 5.0 - 1e-9) && (high >= last || a <= high - 5.0 + 1e-9);
+      };
+      return inside(point.x(), tile.part.lower.x(), tile.part.upper.x(), sheet.page.lower.x(), sheet.page.upper.x()) &&
+             inside(point.y(), tile.part.lower.y(), tile.part.upper.y(), sheet.page.lower.y(), sheet.page.upper.y()) &&
+             (tile.part.lower.array() <= point.array()).all() && (point.array() <= tile.part.upper.array()).all();
+    });
+  };
+  for (int i = 0; i <= 5000; ++i) {
+    const double t = i / 5000.0;
+    EXPECT_TRUE(shown(Point2(900.0 * t, 1100.0 * t)));
+    const double angle = 0.1 + 1.2 * t;
+    EXPECT_TRUE(shown(Point2(600.0 + 300.0 * std::cos(angle), 300.0 + 300.0 * std::sin(angle))));
+  }
+  EXPECT_TRUE(has(0, 0));
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    EXPECT_EQ(tiles[i].number, static_cast<int>(i) + 1);
+    const auto texts = texts_of(tiles[i]);
+    EXPECT_THAT(texts,
+                ::testing::Contains(HasSubstr(fmt::format("row {}, column {}, sheet {} of {};", row_name(tiles[i].row),
+                                                          tiles[i].column + 1, i + 1, tiles.size()))));
+    // No line to cut, and no name, towards a page that is not there.
+    for (const auto& [row, column] : {std::pair{0, 1}, std::pair{0, -1}, std::pair{1, 0}, std::pair{-1, 0}}) {
+      const std::string name = row_name(tiles[i].row + row) + std::to_string(tiles[i].column + column + 1);
+      EXPECT_EQ(std::ranges::count(texts, name), has(tiles[i].row + row, tiles[i].column + column) ? 1 : 0);
+    }
+  }
+}
+
+TEST(Tiles, HaveAMapThatNamesThem) {
+  const Sheet sheet = mostly_blank_sheet();
+  const auto tiles = tiles_of(sheet);
+  const AssemblyMap map = assembly_map(sheet, tiles);
+  std::vector<std::string> names;
+  for (const Entity& entity : map.marks.entities(map.marks.layer("tile label"))) {
+    const Text& text = std::get<Text>(entity);
+    const auto tile = std::ranges::find_if(
+        tiles, [&](const Tile& t) { return text.text == row_name(t.row) + std::to_string(t.column + 1); });
+    if (tile == tiles.end()) continue;
+    names.push_back(text.text);
+    // In the middle of what the tile shows.
+    const Point2 middle = 0.5 * (tile->part.lower + tile->part.upper);
+    EXPECT_LE((map.place + map.factor * (middle - sheet.page.lower) - text.place).norm(), 1e-9);
+  }
+  EXPECT_EQ(names.size(), tiles.size());
+  const Rectangle covered = extent(map.marks);
+  EXPECT_GE(covered.lower.minCoeff(), 4.0);
+  EXPECT_LE(covered.upper.x(), map.paper_width - 4.0);
+  EXPECT_LE(covered.upper.y(), map.paper_height - 4.0);
+  // Before the tiles.
+  const std::string pdf = to_pdf({&sheet, 1}, {"", Tiling{}});
+  EXPECT_THAT(pdf, HasSubstr(fmt::format("/Count {}", tiles.size() + 1)));
+  EXPECT_THAT(pdf, HasSubstr("how the"));
 }
 
 TEST(Tiles, LabelsStayOnThePaper) {
