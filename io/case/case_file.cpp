@@ -47,6 +47,8 @@ std::vector<std::string> quantity_names(const CaseKeys& keys, int dim) {
     for (const std::string& quantity : section_quantity_names()) names.push_back(section.name + "." + quantity);
   if (keys.hydrostatics)
     for (std::string& name : hydrostatics_quantity_names(*keys.hydrostatics)) names.push_back(std::move(name));
+  if (keys.added_mass)
+    for (std::string& name : added_mass_quantity_names()) names.push_back(std::move(name));
   return names;
 }
 
@@ -86,6 +88,8 @@ std::pair<int, int> expected_shape(const CaseKeys& keys, const std::string& name
   for (const PlaneSectionKeys& section : keys.section)
     for (const std::string& quantity : section_quantity_names())
       if (section.name + "." + quantity == name) return {static_cast<int>(section_offsets(section).size()), 1};
+  if (name == "added_mass.matrix") return {6, 6};
+  if (name.starts_with("added_mass.")) return {1, 1};
   // Of tables as many as there are rows.
   if (keys.hydrostatics && name.find('.') != std::string::npos) return {-1, 1};
   return value_shape(name, dim);
@@ -291,6 +295,8 @@ CaseFile read_case(const Value& root, const std::filesystem::path& path, const F
       check_sections(file.keys, *dim, complaints);
       if (file.keys.hydrostatics && *dim == 2)
         complaints.add(file.keys.hydrostatics->where, "hydrostatics are for solids; the shape is plane");
+      if (file.keys.added_mass && *dim == 2)
+        complaints.add(file.keys.added_mass->where, "added masses are for solids; the shape is plane");
       check_expectations(file.keys, *dim, complaints);
       check_convergence(file.keys, *dim, complaints);
       check_poles(file.keys, *dim, complaints);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/case/added_mass_keys.h"
 #include "io/case/analysis_keys.h"
 #include "io/case/drawing_keys.h"
 #include "io/case/file_shape.h"
@@ -95,6 +96,7 @@ struct CaseKeys {
   std::optional<DrawingKeys> drawings;
   std::optional<MouldKeys> moulds;
   std::optional<HydrostaticsKeys> hydrostatics;
+  std::optional<AddedMassKeys> added_mass;
   ExpectKeys expect;
   OutputKeys output;
   std::optional<ConvergenceKeys> convergence;

@@ -183,18 +183,21 @@ const Schema<HydrostaticsKeys>& schema<HydrostaticsKeys>() {
           .key("water_density", &HydrostaticsKeys::water_density,
                {.text = "The displacement is this times the volume.", .range = Range::above(0)})
           .key("baseline", &HydrostaticsKeys::baseline,
-               {.text = "z from which draughts and heights count; that of the lowest point if absent.",
+               {.text = "z from which draughts and heights count; that of a hull's table, else of the lowest point, if "
+                        "absent.",
                 .unit = "length"})
           .key("origin", &HydrostaticsKeys::origin,
-               {.text = "x and y at which the draught is measured; the middle of the shape's box if absent. The "
-                        "section there is the midship section.",
+               {.text = "x and y at which the draught is measured; amidships of a hull's table, else the middle of the "
+                        "shape's "
+                        "box, if absent. The section there is the midship section.",
                 .unit = "length"})
-          .key("length", &HydrostaticsKeys::length,
-               {.text = "For the coefficients; that of the waterplane if absent.",
-                .unit = "length",
-                .range = Range::above(0)})
+          .key(
+              "length", &HydrostaticsKeys::length,
+              {.text = "For the coefficients; that between a hull's perpendiculars, else of the waterplane, if absent.",
+               .unit = "length",
+               .range = Range::above(0)})
           .key("beam", &HydrostaticsKeys::beam,
-               {.text = "For the coefficients; that of the waterplane if absent.",
+               {.text = "For the coefficients; the moulded one of a hull, else that of the waterplane, if absent.",
                 .unit = "length",
                 .range = Range::above(0)})
           .key("loading", &HydrostaticsKeys::loading, {.text = "The body's mass: where it comes to rest."})

@@ -222,6 +222,7 @@ const Schema<CaseKeys>& schema<CaseKeys>() {
           .key("drawings", &CaseKeys::drawings, {.text = "Workshop drawings."})
           .key("moulds", &CaseKeys::moulds, {.text = "Templates of the boards of a mould."})
           .key("hydrostatics", &CaseKeys::hydrostatics, {.text = "A solid afloat."})
+          .key("added_mass", &CaseKeys::added_mass, {.text = "The inertia of the fluid around a solid."})
           .key("expect", &CaseKeys::expect, {.text = "Expected values."})
           .key("output", &CaseKeys::output, {.text = "What is written."})
           .key("convergence", &CaseKeys::convergence, {.text = "A study of fixed Gauss rules."})

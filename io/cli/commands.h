@@ -151,8 +151,10 @@ struct HullExportArguments {
   std::string name;
   std::filesystem::path file;
   OutputFormat format = OutputFormat::text;
+  /// By how much half-breadths may be moved to make the hull fair, in its unit of length; as they are if absent.
+  std::optional<double> fair;
 };
-/// Writes a hull of a library as a table of offsets in CSV.
+/// Writes a hull of a library as a table of offsets in CSV; if it is faired, tells how much was moved and what for.
 int export_hull(const HullExportArguments& arguments, std::ostream& out);
 
 int remove_hull(const std::filesystem::path& library, const std::string& name, OutputFormat format, std::ostream& out);

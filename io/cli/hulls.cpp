@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "geometry/hull/fairing.h"
+#include "geometry/hull/fairness.h"
+#include "geometry/hull/hull_surface.h"
 #include "io/atomic_file.h"
 #include "io/cli/commands.h"
 #include "io/cli/replies.h"
@@ -52,11 +55,32 @@ int import_hull(const HullImportArguments& arguments, std::ostream& out) {
   return 0;
 }
 
+namespace {
+
+std::string fairness_text(const char* when, double roughness, const geometry::OffsetTable& table) {
+  const auto fairness = geometry::measure_fairness(table, geometry::hull_surface(geometry::hull_sections(table)));
+  return fmt::format(
+      "  {}: roughness {:.6g}, bending energy {:.6g}, {} and {} changes of curvature's sign along "
+      "stations and waterlines\n",
+      when, roughness, fairness.bending_energy, fairness.station_sign_changes, fairness.waterline_sign_changes);
+}
+
+}  // namespace
+
 int export_hull(const HullExportArguments& arguments, std::ostream& out) {
-  io::write_file(arguments.file, io::offsets_text(io::read_hull(arguments.library, arguments.name)));
-  out << (arguments.format == OutputFormat::json
-              ? hull_json("exported", arguments.library, arguments.name, arguments.file)
-              : fmt::format("  {}\n", arguments.file.string()));
+  geometry::OffsetTable table = io::read_hull(arguments.library, arguments.name);
+  const bool is_text = arguments.format == OutputFormat::text;
+  if (arguments.fair) {
+    const geometry::FairedOffsets faired = geometry::fair_offsets(table, *arguments.fair);
+    if (is_text)
+      out << fairness_text("as given", faired.roughness_before, table)
+          << fairness_text("faired", faired.roughness, faired.table)
+          << fmt::format("  {} half-breadths moved, by {:.4g} at most\n", faired.moved, faired.largest_move);
+    table = faired.table;
+  }
+  io::write_file(arguments.file, io::offsets_text(table));
+  out << (is_text ? fmt::format("  {}\n", arguments.file.string())
+                  : hull_json("exported", arguments.library, arguments.name, arguments.file));
   return 0;
 }
 

@@ -146,6 +146,8 @@ void declare_hulls(CLI::App& app, HullsArguments& arguments, bool& json) {
   add_library(exported, arguments.exported.library);
   exported.add_option("NAME", arguments.exported.name, "Of the hull")->required();
   exported.add_option("FILE", arguments.exported.file, "Offsets (.csv)")->required();
+  exported.add_option("--fair", arguments.exported.fair, "Moves half-breadths by at most this to make the hull fair")
+      ->type_name("LENGTH");
   CLI::App& remove = *hulls.add_subcommand("remove", "Takes a hull out of a library");
   add_library(remove, arguments.library);
   remove.add_option("NAME", arguments.name, "Of the hull")->required();

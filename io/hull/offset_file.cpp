@@ -172,6 +172,8 @@ class OffsetReader {
         refuse(line, fmt::format("found half_breadths {}; expected \"beam\" or \"waterline\"", text(1)));
       breadths_ = text(1) == "beam" ? BreadthUnit::beam : BreadthUnit::waterline;
     } else {
+      if (key.find(';') != std::string_view::npos)
+        refuse(line, fmt::format("found \"{}\"; expected cells with commas between them, and points in numbers", key));
       refuse(line, fmt::format("found the key \"{}\"; expected name, source, length, beam, draught, "
                                "after_perpendicular, baseline, stations, waterlines, half_breadths, or the head of the "
                                "table, which begins with \"station\"",
@@ -225,8 +227,9 @@ class OffsetReader {
     for (; next_ < lines_.size() && !is_contour(lines_[next_].cells.front()); ++next_) {
       const Line& line = lines_[next_];
       if (line.cells.size() != columns_.size()) {
-        refuse(line, fmt::format("found {} cells; expected {}, as in the head of the table", line.cells.size(),
-                                 columns_.size()));
+        refuse(line, fmt::format("found {} cells; expected {}, as in the head of the table{}", line.cells.size(),
+                                 columns_.size(),
+                                 line.cells.size() > columns_.size() ? " (numbers have points, not commas)" : ""));
       }
       std::vector<double> row(columns_.size(), none);
       const bool is_largest = line.cells.front() == "max";

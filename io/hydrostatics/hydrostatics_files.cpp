@@ -46,25 +46,26 @@ Json table_json(const NumberTable& table) {
   return json;
 }
 
-/// Each quantity over its largest modulus: they have nothing else in common.
-void write_curves_of_form(const std::filesystem::path& path, const NumberTable& table, const std::string& unit) {
+/// Each quantity over its largest modulus: they have nothing else in common. Centres count from amidships, forward.
+void write_curves_of_form(const std::filesystem::path& path, const NumberTable& table, double amidships,
+                          const std::string& unit) {
   svg::Plot plot;
   plot.title = "Curves of form";
   plot.x.label = "quantity / its largest value";
   plot.y.label = with_unit("draught", unit);
   plot.width = 900;
   plot.height = 600;
-  for (const char* name :
-       {"displacement", "waterplane_area", "wetted_surface", "vcb", "it", "il", "kmt", "cb", "cp", "cm", "cwp"}) {
+  for (const char* name : {"displacement", "waterplane_area", "wetted_surface", "vcb", "it", "il", "kmt", "lcb", "lcf",
+                           "cb", "cp", "cm", "cwp"}) {
     std::vector<double> values = table.column(name);
+    if (name[0] == 'l')
+      for (double& x : values) x -= amidships;
     double largest = 0.0;
     for (const double x : values)
       if (std::isfinite(x)) largest = std::max(largest, std::abs(x));
     if (!(largest > 0.0)) continue;
     for (double& x : values) x /= largest;
     plot.series.push_back(line(fmt::format("{} ({:.4g})", name, largest), std::move(values), table.column("draught")));
-    // The coefficients, in whose place colours begin anew.
-    if (name[0] == 'c') plot.series.back().line = svg::Line::dashed;
   }
   svg::write_svg(path, plot);
 }
@@ -145,7 +146,7 @@ void write_hydrostatics(const std::filesystem::path& folder, const HydrostaticsR
   if (!output.svg) return;
   const std::string& unit = report.unit;
   if (const NumberTable* table = report.find("curves_of_form"))
-    write_curves_of_form(folder / "curves_of_form.svg", *table, unit);
+    write_curves_of_form(folder / "curves_of_form.svg", *table, report.origin.x(), unit);
   if (const NumberTable* table = report.find("bonjean"))
     write_family(folder / "bonjean.svg", *table, "Bonjean's curves", "station", "area", "draught", "immersed area",
                  with_unit("draught", unit));

@@ -15,6 +15,7 @@
 #include "io/case/curve_builder.h"
 #include "io/case/shape_builder.h"
 #include "io/expression.h"
+#include "io/hydrostatics/added_mass_report.h"
 #include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/hull_report.h"
 #include "io/results/plane_sections.h"
@@ -324,11 +325,28 @@ void add_sections(const CaseFile& file, const Model<Dim>& model, const RunOption
 
 // --- Hydrostatics ---------------------------------------------------------------------------------------------
 
+/// The table of a hull that has not been moved, else null.
+const geometry::OffsetTable* hull_table(const CaseFile& file) {
+  const auto* keys = std::get_if<HullKeys>(&file.keys.geometry);
+  return keys && keys->transform.items.empty() && file.hull ? &file.hull->table : nullptr;
+}
+
+/// What is absent, as the table of a hull says: baseline, amidships, length between perpendiculars, moulded beam.
+HydrostaticsKeys with_those_of_the_hull(const CaseFile& file, HydrostaticsKeys keys) {
+  const geometry::OffsetTable* table = hull_table(file);
+  if (!table) return keys;
+  if (!keys.baseline) keys.baseline = table->baseline;
+  if (!keys.origin) keys.origin = Coordinates{{table->after_perpendicular + 0.5 * table->length, 0.0}, keys.where};
+  if (!keys.length) keys.length = table->length;
+  if (!keys.beam) keys.beam = table->beam;
+  return keys;
+}
+
 template <int Dim>
 void add_hydrostatics(const CaseFile& file, const Model<Dim>& model, const RunOptions& run, Report& report) {
   if constexpr (Dim == 3) {
     if (!file.keys.hydrostatics) return;
-    const HydrostaticsKeys& keys = *file.keys.hydrostatics;
+    const HydrostaticsKeys keys = with_those_of_the_hull(file, *file.keys.hydrostatics);
     if (is_refused(file, model.oriented.topology.closed))
       throw InputError(
           fmt::format("{}: hydrostatics need a closed boundary; found {}; expected a closed one, or "
@@ -344,6 +362,26 @@ void add_hydrostatics(const CaseFile& file, const Model<Dim>& model, const RunOp
     if (file.cad) result.unit = file.cad->unit;
     report.warnings.insert(report.warnings.end(), result.warnings.begin(), result.warnings.end());
     report.hydrostatics = std::make_shared<const HydrostaticsReport>(std::move(result));
+  }
+}
+
+// --- Added masses ---------------------------------------------------------------------------------------------
+
+template <int Dim>
+void add_added_mass(const CaseFile& file, const Model<Dim>& model, const RunOptions& run, Report& report) {
+  if constexpr (Dim == 3) {
+    if (!file.keys.added_mass) return;
+    AddedMassKeys keys = *file.keys.added_mass;
+    const geometry::OffsetTable* table = hull_table(file);
+    if (keys.draught && !keys.baseline && table) keys.baseline = table->baseline;
+    if (!model.oriented.topology.closed)
+      throw InputError(fmt::format("{}: added masses need a closed boundary; found {}", keys.where.place.describe(),
+                                   describe_free_edges(model.oriented)));
+    std::function<void(double)> progress;
+    if (run.progress) progress = [report = run.progress](double fraction) { report("added masses", fraction); };
+    report.added_mass = located(keys.where, [&] {
+      return std::make_shared<const AddedMassReport>(compute_added_mass(keys, model.oriented, run.threads, progress));
+    });
   }
 }
 
@@ -387,8 +425,12 @@ void compare_expectations(const CaseFile& file, Report& report) {
       report.sections ? section_quantities(*report.sections) : std::vector<Quantity>();
   const std::vector<Quantity> of_hydrostatics =
       report.hydrostatics ? expected_quantities(*report.hydrostatics) : std::vector<Quantity>();
+  const std::vector<Quantity> of_added_mass =
+      report.added_mass ? expected_quantities(*report.added_mass) : std::vector<Quantity>();
   const auto find = [&](const std::string& name) -> const Quantity* {
     if (name == closure.name) return &closure;
+    const auto added = std::ranges::find(of_added_mass, name, &Quantity::name);
+    if (added != of_added_mass.end()) return &*added;
     const auto afloat = std::ranges::find(of_hydrostatics, name, &Quantity::name);
     if (afloat != of_hydrostatics.end()) return &*afloat;
     const auto section = std::ranges::find(of_sections, name, &Quantity::name);
@@ -442,6 +484,7 @@ Report report_of(const CaseFile& file, const Model<Dim>& model, const RunOptions
   }
   add_sections(file, model, run, report);
   add_hydrostatics(file, model, run, report);
+  add_added_mass(file, model, run, report);
   report.timings.integrate = seconds_since(start);
   add_analysis(file, model, run, report);
   check_finite(report.properties, file.path.string());

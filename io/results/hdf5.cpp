@@ -12,6 +12,7 @@
 #include "geometry/errors.h"
 #include "io/analysis/analysis.h"
 #include "io/atomic_file.h"
+#include "io/hydrostatics/added_mass_report.h"
 #include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/hdf5_parts.h"
 
@@ -304,6 +305,7 @@ void write_report(hid_t file, const Report& report, const AnyModel& model) {
   if (report.hull) write_quantities(file, "hull", report.hull_quantities);
   if (report.propeller) write_quantities(file, "propeller", report.propeller_quantities);
   if (report.hydrostatics) write_quantities(file, "hydrostatics", expected_quantities(*report.hydrostatics));
+  if (report.added_mass) write_quantities(file, "added_mass", expected_quantities(*report.added_mass));
   if (report.analysis) write_analysis(file, *report.analysis, *report.fields);
   write_expectations(file, report.expectations);
   const Handle timings = open_group(file, "timings");

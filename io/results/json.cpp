@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "io/atomic_file.h"
+#include "io/hydrostatics/added_mass_report.h"
 #include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/analysis_json.h"
 #include "io/results/fit_json.h"
@@ -94,6 +95,7 @@ std::string to_json(const Report& report) {
   if (report.analysis) json["analysis"] = analysis_json(*report.analysis);
   if (report.sections) json["sections"] = sections_json(*report.sections);
   if (report.hydrostatics) json["hydrostatics"] = hydrostatics_json(*report.hydrostatics);
+  if (report.added_mass) json["added_mass"] = added_mass_json(*report.added_mass);
   json["expectations"] = expectations_json(report.expectations);
   json["timings"] = {{"read", number(report.timings.read)},
                      {"integrate", number(report.timings.integrate)},

@@ -21,6 +21,7 @@ struct HullFacts;
 struct PropellerFacts;
 struct SectionFamily;
 struct HydrostaticsReport;
+struct AddedMassReport;
 
 /// A number, a vector (columns = 1) or a matrix, entry by entry along the rows.
 struct Entries {
@@ -136,6 +137,8 @@ struct Report {
   std::shared_ptr<const std::vector<SectionFamily>> sections;
   /// Null if it is not asked for.
   std::shared_ptr<const HydrostaticsReport> hydrostatics;
+  /// Added masses; null if none are asked for.
+  std::shared_ptr<const AddedMassReport> added_mass;
   std::vector<ExpectationResult> expectations;
   Timings timings;
   int threads = 1;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "io/analysis/analysis.h"
+#include "io/hydrostatics/added_mass_report.h"
 #include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/fit_text.h"
 #include "io/results/hull_report.h"
@@ -245,13 +246,19 @@ std::string results_text(const Report& report) {
       if (expectation_of(report, quantity.name)) add_quantity(table, report, quantity);
     }
   }
+  if (report.added_mass) {
+    for (const Quantity& quantity : expected_quantities(*report.added_mass)) {
+      if (expectation_of(report, quantity.name)) add_quantity(table, report, quantity);
+    }
+  }
   add_quantity(table, report, {"closure_defect", single(report.geometry.closure_defect), {}, {}, {}, ""});
-  return fmt::format("{}\n  {}\n{}{}{}{}{}{}\n{}\n{}{}  {}\n", report.title, geometry_line(report.geometry),
+  return fmt::format("{}\n  {}\n{}{}{}{}{}{}\n{}\n{}{}{}  {}\n", report.title, geometry_line(report.geometry),
                      cad_line(report), report.fit ? fit_text(*report.fit) : "",
                      report.hull ? hull_text(*report.hull) : "",
                      report.propeller ? propeller_text(*report.propeller) : "", analysis_line(report),
                      history_text(report), table.text(2), report.sections ? sections_text(*report.sections) : "",
-                     report.hydrostatics ? hydrostatics_text(*report.hydrostatics) : "", status_line(report));
+                     report.hydrostatics ? hydrostatics_text(*report.hydrostatics) : "",
+                     report.added_mass ? added_mass_text(*report.added_mass) : "", status_line(report));
 }
 
 std::string verification_text(const std::vector<VerifiedCase>& cases) {

@@ -1,21 +1,28 @@
 #include "solver/bem/added_mass.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 #include "geometry/bezier/element_table.h"
+#include "geometry/errors.h"
 #include "geometry/intersection/clip.h"
 #include "geometry/shapes/transforms.h"
 #include "solver/bem/boundary_integrals.h"
 #include "solver/bem/problem.h"
+#include "solver/properties.h"
 
 namespace isorim::solver {
 namespace {
 
 using geometry::Boundary;
+using geometry::OrientedBoundary;
 using geometry::Patch;
 using geometry::Point3;
 using geometry::Vector3;
@@ -50,6 +57,64 @@ Problem<3> problem_of(int motion, const FieldSpace<3>& space, const Point3& cent
   return problem;
 }
 
+/// Of one discretisation; not symmetric.
+struct RawAddedMass {
+  AddedMass::Matrix matrix;
+  std::size_t unknowns = 0;
+  std::string method;
+};
+
+/// - int phi v_j dS for all motions j.
+Eigen::Matrix<double, 1, 6> impulse(const Problem<3>& problem, const FieldSpace<3>& space, const Solution<3>& solution,
+                                    const Point3& centre, const EvaluationOptions& evaluation) {
+  const auto make = [&]() -> FieldFunction<3> {
+    return [centre](const quadrature::NodeView<3>& nodes, const Densities& fields, std::span<double> values) {
+      const std::size_t count = nodes.size();
+      for (std::size_t q = 0; q < count; ++q) {
+        const Point3 x(nodes.position[0][q], nodes.position[1][q], nodes.position[2][q]);
+        const Vector3 n(nodes.normal[0][q], nodes.normal[1][q], nodes.normal[2][q]);
+        for (std::size_t j = 0; j < 6; ++j)
+          values[j * count + q] =
+              -fields.potential(static_cast<Eigen::Index>(q), 0) * normal_velocity(static_cast<int>(j), x - centre, n);
+      }
+    };
+  };
+  return integrate_fields<3>(problem, space, solution, 6, make, evaluation).transpose();
+}
+
+RawAddedMass solve_motions(const OrientedBoundary<3>& boundary, const AddedMassOptions& options) {
+  DiscretisationOptions<3> discretisation;
+  discretisation.degree = options.degree;
+  discretisation.refine = options.refine;
+  const FieldSpace<3> space = field_space(graded_to_edges(boundary, options.edges), discretisation);
+  std::vector<Problem<3>> problems;
+  for (int k = 0; k < 6; ++k) problems.push_back(problem_of(k, space, options.centre));
+  const std::vector<Solution<3>> solutions = solve_all<3>(problems, space, options.solve);
+  EvaluationOptions evaluation;
+  evaluation.tolerance = options.solve.tolerance;
+  evaluation.threads = options.solve.threads;
+  RawAddedMass result;
+  result.unknowns = solutions.front().unknowns;
+  result.method = solutions.front().method;
+  for (int k = 0; k < 6; ++k) {
+    const auto index = static_cast<std::size_t>(k);
+    result.matrix.row(k) = impulse(problems[index], space, solutions[index], options.centre, evaluation);
+  }
+  return result;
+}
+
+/// Steiner: from the inertia about the centroid to that about the centre.
+void set_displaced(const OrientedBoundary<3>& boundary, const AddedMassOptions& options, AddedMass& result) {
+  PropertyOptions<3> property_options;
+  property_options.integration.threads = options.solve.threads;
+  const auto properties = geometric_properties<3>(geometry::bezier_elements(boundary.boundary), property_options);
+  const DomainProperties<3>& displaced = *properties.domain;
+  const Vector3 arm = displaced.centroid - options.centre;
+  result.volume = displaced.measure.value;
+  result.inertia =
+      displaced.inertia + result.volume * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
+}
+
 }  // namespace
 
 Boundary<3> double_body(const Boundary<3>& solid, double height) {
@@ -72,34 +137,30 @@ Boundary<3> double_body(const Boundary<3>& solid, double height) {
   return both;
 }
 
-AddedMass added_mass(const geometry::OrientedBoundary<3>& boundary, const AddedMassOptions& options) {
-  const FieldSpace<3> space = field_space(boundary, options.discretisation);
-  EvaluationOptions evaluation;
-  evaluation.tolerance = options.solve.tolerance;
-  evaluation.threads = options.solve.threads;
-  AddedMass result;
-  Eigen::Matrix<double, 6, 6> matrix;
-  for (int k = 0; k < 6; ++k) {
-    const Problem<3> problem = problem_of(k, space, options.centre);
-    const Solution<3> solution = solve(problem, space, options.solve);
-    result.unknowns = solution.unknowns;
-    if (k == 0) result.messages = solution.messages;
-    for (int j = 0; j < 6; ++j) {
-      const auto make = [&]() -> FieldFunction<3> {
-        return [j, centre = options.centre](const quadrature::NodeView<3>& nodes, const Densities& fields,
-                                            std::span<double> values) {
-          for (std::size_t q = 0; q < values.size(); ++q) {
-            const Point3 x(nodes.position[0][q], nodes.position[1][q], nodes.position[2][q]);
-            const Vector3 n(nodes.normal[0][q], nodes.normal[1][q], nodes.normal[2][q]);
-            values[q] = -fields.potential(static_cast<Eigen::Index>(q), 0) * normal_velocity(j, x - centre, n);
-          }
-        };
-      };
-      matrix(k, j) = integrate_fields<3>(problem, space, solution, make, evaluation);
-    }
+Eigen::Matrix<double, 6, 1> AddedMass::coefficients() const {
+  Eigen::Matrix<double, 6, 1> result;
+  for (int i = 0; i < 6; ++i) {
+    const double displaced = i < 3 ? volume : inertia(i - 3, i - 3);
+    result[i] = displaced > 0.0 ? matrix(i, i) / displaced : 0.0;
   }
-  result.matrix = 0.5 * (matrix + matrix.transpose());
-  result.asymmetry = 0.5 * (matrix - matrix.transpose()).cwiseAbs().maxCoeff();
+  return result;
+}
+
+AddedMass added_mass(const OrientedBoundary<3>& boundary, const AddedMassOptions& options) {
+  if (options.refine < 1)
+    throw InputError(fmt::format("found {} bisections for added masses; expected 1 or more", options.refine));
+  const RawAddedMass fine = solve_motions(boundary, options);
+  AddedMassOptions less = options;
+  --less.refine;
+  const RawAddedMass coarse = solve_motions(boundary, less);
+
+  AddedMass result;
+  result.matrix = 0.5 * (fine.matrix + fine.matrix.transpose());
+  const AddedMass::Matrix from_coarse = result.matrix - 0.5 * (coarse.matrix + coarse.matrix.transpose());
+  result.error = from_coarse.cwiseAbs() + 0.5 * (fine.matrix - fine.matrix.transpose()).cwiseAbs();
+  result.unknowns = fine.unknowns;
+  result.method = fine.method;
+  set_displaced(boundary, options, result);
   return result;
 }
 

@@ -25,14 +25,14 @@ double stiffness_of(const Equation<Dim>& equation) {
 }  // namespace
 
 template <int Dim>
-Assembler<Dim>::Assembler(const Problem<Dim>& problem, const FieldSpace<Dim>& space,
+Assembler<Dim>::Assembler(std::span<const Problem<Dim>> problems, const FieldSpace<Dim>& space,
                           const quadrature::TargetRules<Dim>& rules, std::vector<RigidMotion<Dim>> flux_modes)
-    : problem_(&problem),
+    : problems_(problems),
       space_(&space),
       rules_(&rules),
       flux_modes_(std::move(flux_modes)),
-      components_(component_count(problem.equation)),
-      stiffness_(stiffness_of(problem.equation)),
+      components_(component_count(problem().equation)),
+      stiffness_(stiffness_of(problem().equation)),
       flux_scale_(stiffness_ / geometry::bounding_box(space.table).diagonal()),
       store_(space.table.elements.size()) {
   list_elements();
@@ -55,9 +55,12 @@ void Assembler<Dim>::list_elements() {
 
 template <int Dim>
 bool Assembler<Dim>::needs_single_layer(int element) const {
-  const auto& components = condition_on(element).components;
-  return !flux_modes_.empty() || std::any_of(components.begin(), components.end(), [](const auto& c) {
-    return c.kind != ConditionKind::flux || static_cast<bool>(c.value);
+  if (!flux_modes_.empty()) return true;
+  const auto number = static_cast<std::size_t>(problem().condition_of[static_cast<std::size_t>(element)]);
+  return std::any_of(problems_.begin(), problems_.end(), [&](const Problem<Dim>& problem) {
+    const auto& components = problem.conditions[number].components;
+    return std::any_of(components.begin(), components.end(),
+                       [](const auto& c) { return c.kind != ConditionKind::flux || static_cast<bool>(c.value); });
   });
 }
 
@@ -69,11 +72,25 @@ Target<Dim> Assembler<Dim>::target(int point) const {
 
 template <int Dim>
 Eigen::MatrixXd Assembler<Dim>::load_potentials(double tolerance, int threads) const {
-  if (problem_->loads.empty()) return Eigen::MatrixXd::Zero(components_, space_->function_count());
+  Eigen::MatrixXd potentials = Eigen::MatrixXd::Zero(size(), right_sides());
   std::vector<Target<Dim>> targets;
   for (int i = 0; i < space_->function_count(); ++i) targets.push_back(target(i));
-  return domain_potentials<Dim>(problem_->loads, space_->table, *rules_, targets, {tolerance, threads},
-                                space_->coarse.get());
+  for (Eigen::Index k = 0; k < potentials.cols(); ++k) {
+    const Loads<Dim>& loads = problems_[static_cast<std::size_t>(k)].loads;
+    if (!loads.empty())
+      potentials.col(k) =
+          domain_potentials<Dim>(loads, space_->table, *rules_, targets, {tolerance, threads}, space_->coarse.get())
+              .reshaped();
+  }
+  return potentials;
+}
+
+template <int Dim>
+void Assembler<Dim>::evaluate_data(int element, const NodeView<Dim>& nodes, AssemblyRoom<Dim>& room,
+                                   std::vector<ConditionValues<Dim>>& values) const {
+  values.resize(problems_.size());
+  for (std::size_t k = 0; k < problems_.size(); ++k)
+    room.data[k].evaluate(problem().condition_of[static_cast<std::size_t>(element)], nodes, values[k]);
 }
 
 template <int Dim>
@@ -86,7 +103,7 @@ auto Assembler<Dim>::kept_nodes(int element, const NodeView<Dim>& nodes, Assembl
   if (known != kept.end()) return *known->nodes;
   auto made = std::make_unique<KeptNodes>();
   fill_node_basis(*space_, element, nodes, made->basis, room.scratch);
-  room.data.evaluate(problem_->condition_of[index], nodes, made->values);
+  evaluate_data(element, nodes, room, made->values);
   return *kept.emplace_back(KeptRule{nodes.kept, std::move(made)}).nodes;
 }
 
@@ -94,11 +111,11 @@ template <int Dim>
 auto Assembler<Dim>::node_data(int element, const NodeView<Dim>& nodes, AssemblyRoom<Dim>& room) const -> NodeData {
   if (nodes.kept >= 0) {
     const KeptNodes& kept = kept_nodes(element, nodes, room);
-    return {&kept.basis, &kept.values};
+    return {&kept.basis, kept.values};
   }
   fill_node_basis(*space_, element, nodes, room.basis, room.scratch);
-  room.data.evaluate(problem_->condition_of[static_cast<std::size_t>(element)], nodes, room.values);
-  return {&room.basis, &room.values};
+  evaluate_data(element, nodes, room, room.values);
+  return {&room.basis, room.values};
 }
 
 template <int Dim>
@@ -108,17 +125,22 @@ auto Assembler<Dim>::target_terms(int point, const Eigen::Matrix<double, Dim, Di
   const Condition<Dim>& condition = condition_on(at.element);
   const auto count = static_cast<std::size_t>(space_->elements[static_cast<std::size_t>(at.element)].count);
   Eigen::Matrix<double, Dim, Dim> factor = -sign() * double_layer;
-  if (problem_->exterior) factor += Eigen::Matrix<double, Dim, Dim>::Identity();
+  if (problem().exterior) factor += Eigen::Matrix<double, Dim, Dim>::Identity();
   std::vector<double> basis(count);
   basis_values(*space_, at.element, at.place, std::span<double>(basis));
-  room.data.evaluate(problem_->condition_of[static_cast<std::size_t>(at.element)], at.position, at.normal, room.values);
-  TargetTerms terms{Eigen::Matrix<double, Dim, 1>::Zero(),
+  for (std::size_t k = 0; k < problems_.size(); ++k)
+    room.data[k].evaluate(problem().condition_of[static_cast<std::size_t>(at.element)], at.position, at.normal,
+                          room.values[k]);
+  TargetTerms terms{Eigen::Matrix<double, Dim, Eigen::Dynamic>::Zero(Dim, right_sides()),
                     Eigen::MatrixXd::Zero(components_, components_ * static_cast<Eigen::Index>(count))};
   for (int c = 0; c < components_; ++c) {
     const auto index = static_cast<std::size_t>(c);
     const geometry::Vector<Dim> along = factor * component_axis(condition, c);
     if (condition.components[index].kind == ConditionKind::value) {
-      if (!room.values.value[index].empty()) terms.right -= room.values.value[index][0] * along;
+      for (std::size_t k = 0; k < problems_.size(); ++k) {
+        const std::vector<double>& given = room.values[k].value[index];
+        if (!given.empty()) terms.right.col(static_cast<Eigen::Index>(k)) -= given[0] * along;
+      }
       continue;
     }
     for (std::size_t a = 0; a < count; ++a)

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -24,18 +25,21 @@
 ///
 /// The unknown (a, c) of function a and component c (of the frame of the condition under which a lives) stands in
 /// column a C + c, C the number of components: a coefficient of u where t or Robin's condition is given, of t divided
-/// by flux_scale() where u is. Known data enter through their values at the quadrature nodes.
+/// by flux_scale() where u is. Known data enter through their values at the quadrature nodes. Problems that differ in
+/// known data alone have right sides of their own and all else in common.
 namespace isorim::solver {
 
 /// One thread's room for what goes with nodes.
 template <int Dim>
 struct AssemblyRoom {
-  explicit AssemblyRoom(const Problem<Dim>& problem) : data(problem) {}
+  explicit AssemblyRoom(std::span<const Problem<Dim>> problems)
+      : data(problems.begin(), problems.end()), values(problems.size()) {}
 
   quadrature::NodeBuffer<Dim> buffer;
-  BoundaryData<Dim> data;
+  /// Of each problem.
+  std::vector<BoundaryData<Dim>> data;
   NodeBasis<Dim> basis;
-  ConditionValues<Dim> values;
+  std::vector<ConditionValues<Dim>> values;
   MomentScratch scratch;
 };
 
@@ -46,7 +50,11 @@ class Assembler {
  public:
   /// The arguments must outlive the object. `flux_modes`: see EquationRows::sums.
   Assembler(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const quadrature::TargetRules<Dim>& rules,
-            std::vector<RigidMotion<Dim>> flux_modes);
+            std::vector<RigidMotion<Dim>> flux_modes)
+      : Assembler(std::span(&problem, 1), space, rules, std::move(flux_modes)) {}
+  /// Of problems that differ in known data alone (see solve_all()), at least one.
+  Assembler(std::span<const Problem<Dim>> problems, const FieldSpace<Dim>& space,
+            const quadrature::TargetRules<Dim>& rules, std::vector<RigidMotion<Dim>> flux_modes);
 
   int components() const { return components_; }
   int size() const { return components_ * space_->function_count(); }
@@ -55,14 +63,18 @@ class Assembler {
   double flux_scale() const { return flux_scale_; }
   /// Conductivity or shear modulus.
   double stiffness() const { return stiffness_; }
-  double sign() const { return problem_->exterior ? -1.0 : 1.0; }
-  const Problem<Dim>& problem() const { return *problem_; }
+  double sign() const { return problem().exterior ? -1.0 : 1.0; }
+  /// The first; what it says of known data holds for it alone.
+  const Problem<Dim>& problem() const { return problems_.front(); }
+  std::span<const Problem<Dim>> problems() const { return problems_; }
+  /// How many problems there are.
+  int right_sides() const { return static_cast<int>(problems_.size()); }
   const FieldSpace<Dim>& space() const { return *space_; }
   const quadrature::TargetRules<Dim>& rules() const { return *rules_; }
   const std::vector<RigidMotion<Dim>>& flux_modes() const { return flux_modes_; }
 
   const Condition<Dim>& condition_on(int element) const {
-    return problem_->conditions[static_cast<std::size_t>(problem_->condition_of[static_cast<std::size_t>(element)])];
+    return problem().conditions[static_cast<std::size_t>(problem().condition_of[static_cast<std::size_t>(element)])];
   }
   bool is_flux_unknown(int element, int component) const {
     return condition_on(element).components[static_cast<std::size_t>(component)].kind == ConditionKind::value;
@@ -78,8 +90,8 @@ class Assembler {
 
   /// The terms in u(x) of a point's equations, given int T dS over the whole boundary.
   struct TargetTerms {
-    /// To be added to the right sides.
-    Eigen::Matrix<double, Dim, 1> right;
+    /// To be added to the right sides, a column for each.
+    Eigen::Matrix<double, Dim, Eigen::Dynamic> right;
     /// Entry (i, a * components() + c): to be added to the coefficient of component c of the a-th function on the
     /// point's element in equation i.
     Eigen::MatrixXd coefficients;
@@ -92,23 +104,27 @@ class Assembler {
   /// What goes with an element's nodes: kept for kept rules, else in the room until the next call.
   struct NodeData {
     const NodeBasis<Dim>* basis;
-    const ConditionValues<Dim>* values;
+    /// Of each problem.
+    std::span<const ConditionValues<Dim>> values;
   };
   NodeData node_data(int element, const quadrature::NodeView<Dim>& nodes, AssemblyRoom<Dim>& room) const;
 
-  /// What the loads give to the right side: components x collocation points.
+  /// What the loads give to the right sides: in each column the components of each collocation point.
   Eigen::MatrixXd load_potentials(double tolerance, int threads) const;
 
  private:
   /// Kept with an element's rule.
   struct KeptNodes {
     NodeBasis<Dim> basis;
-    ConditionValues<Dim> values;
+    std::vector<ConditionValues<Dim>> values;
   };
   const KeptNodes& kept_nodes(int element, const quadrature::NodeView<Dim>& nodes, AssemblyRoom<Dim>& room) const;
   void list_elements();
+  /// What the conditions on an element prescribe at its nodes, in every problem.
+  void evaluate_data(int element, const quadrature::NodeView<Dim>& nodes, AssemblyRoom<Dim>& room,
+                     std::vector<ConditionValues<Dim>>& values) const;
 
-  const Problem<Dim>* problem_;
+  std::span<const Problem<Dim>> problems_;
   const FieldSpace<Dim>* space_;
   const quadrature::TargetRules<Dim>* rules_;
   std::vector<RigidMotion<Dim>> flux_modes_;

@@ -248,21 +248,31 @@ ResultIntegrals<Dim> result_integrals(const Problem<Dim>& problem, const FieldSp
 }
 
 template <int Dim>
-double integrate_fields(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const Solution<Dim>& solution,
-                        const std::function<FieldFunction<Dim>()>& make, const EvaluationOptions& options) {
+Eigen::VectorXd integrate_fields(const Problem<Dim>& problem, const FieldSpace<Dim>& space,
+                                 const Solution<Dim>& solution, int count,
+                                 const std::function<FieldFunction<Dim>()>& make, const EvaluationOptions& options) {
   std::vector<FieldFunction<Dim>> functions(static_cast<std::size_t>(quadrature::thread_count(options.threads)));
-  std::vector<double> parts(space.elements.size(), 0.0);
+  Eigen::MatrixXd parts = Eigen::MatrixXd::Zero(count, static_cast<Eigen::Index>(space.elements.size()));
   ElementSweep<Dim>(problem, space, solution, options)
       .run([&](std::size_t e, const NodeView<Dim>& nodes, const Densities& densities, int thread) {
         FieldFunction<Dim>& function = functions[static_cast<std::size_t>(thread)];
         if (!function) function = make();
-        std::vector<double> values(nodes.size());
+        const std::size_t n = nodes.size();
+        std::vector<double> values(static_cast<std::size_t>(count) * n);
         function(nodes, densities, values);
-        for (std::size_t q = 0; q < values.size(); ++q) parts[e] += nodes.weight[q] * values[q];
+        for (int i = 0; i < count; ++i)
+          for (std::size_t q = 0; q < n; ++q)
+            parts(i, static_cast<Eigen::Index>(e)) += nodes.weight[q] * values[static_cast<std::size_t>(i) * n + q];
       });
-  double sum = 0.0;
-  for (const double part : parts) sum += part;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index e = 0; e < parts.cols(); ++e) sum += parts.col(e);
   return sum;
+}
+
+template <int Dim>
+double integrate_fields(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const Solution<Dim>& solution,
+                        const std::function<FieldFunction<Dim>()>& make, const EvaluationOptions& options) {
+  return integrate_fields<Dim>(problem, space, solution, 1, make, options)[0];
 }
 
 template <int Dim>
@@ -289,8 +299,12 @@ template ResultIntegrals<2> result_integrals(const Problem<2>&, const FieldSpace
                                              const geometry::Point<2>&, const EvaluationOptions&);
 template ResultIntegrals<3> result_integrals(const Problem<3>&, const FieldSpace<3>&, const Solution<3>&,
                                              const geometry::Point<3>&, const EvaluationOptions&);
+template Eigen::VectorXd integrate_fields(const Problem<2>&, const FieldSpace<2>&, const Solution<2>&, int,
+                                          const std::function<FieldFunction<2>()>&, const EvaluationOptions&);
 template double integrate_fields(const Problem<2>&, const FieldSpace<2>&, const Solution<2>&,
                                  const std::function<FieldFunction<2>()>&, const EvaluationOptions&);
+template Eigen::VectorXd integrate_fields(const Problem<3>&, const FieldSpace<3>&, const Solution<3>&, int,
+                                          const std::function<FieldFunction<3>()>&, const EvaluationOptions&);
 template double integrate_fields(const Problem<3>&, const FieldSpace<3>&, const Solution<3>&,
                                  const std::function<FieldFunction<3>()>&, const EvaluationOptions&);
 template BoundaryErrors<2> boundary_errors(const Problem<2>&, const FieldSpace<2>&, const Solution<2>&,

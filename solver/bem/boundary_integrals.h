@@ -74,7 +74,14 @@ ResultIntegrals<Dim> result_integrals(const Problem<Dim>& problem, const FieldSp
 template <int Dim>
 using FieldFunction =
     std::function<void(const quadrature::NodeView<Dim>& nodes, const Densities& fields, std::span<double> values)>;
-/// Its integral over the boundary; `make` is called once for each thread. What a function throws comes through.
+/// The integrals over the boundary of `count` functions at once, function i at node q in values[i n + q]; `make` is
+/// called once for each thread. What a function throws comes through.
+template <int Dim>
+Eigen::VectorXd integrate_fields(const Problem<Dim>& problem, const FieldSpace<Dim>& space,
+                                 const Solution<Dim>& solution, int count,
+                                 const std::function<FieldFunction<Dim>()>& make,
+                                 const EvaluationOptions& options = {});
+/// Of one function.
 template <int Dim>
 double integrate_fields(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const Solution<Dim>& solution,
                         const std::function<FieldFunction<Dim>()>& make, const EvaluationOptions& options = {});

@@ -71,18 +71,18 @@ FrameFields distribute(const Assembler<Dim>& assembler, const Eigen::Ref<const E
 
 /// What the conditions say at the points, zero for what is unknown.
 template <int Dim>
-FrameFields values_at_points(const Assembler<Dim>& assembler, const Eigen::MatrixXd& unknown_potential) {
+FrameFields values_at_points(const Assembler<Dim>& assembler, const Problem<Dim>& problem,
+                             const Eigen::MatrixXd& unknown_potential) {
   const FieldSpace<Dim>& space = assembler.space();
   const int components = assembler.components();
   FrameFields known{Eigen::MatrixXd::Zero(space.function_count(), components),
                     Eigen::MatrixXd::Zero(space.function_count(), components)};
-  BoundaryData<Dim> data(assembler.problem());
+  BoundaryData<Dim> data(problem);
   ConditionValues<Dim> values;
   for (int i = 0; i < space.function_count(); ++i) {
     const CollocationPoint<Dim>& point = space.points[static_cast<std::size_t>(i)];
     const Condition<Dim>& condition = assembler.condition_on(point.element);
-    data.evaluate(assembler.problem().condition_of[static_cast<std::size_t>(point.element)], point.position,
-                  point.normal, values);
+    data.evaluate(problem.condition_of[static_cast<std::size_t>(point.element)], point.position, point.normal, values);
     for (int c = 0; c < components; ++c) {
       const auto index = static_cast<std::size_t>(c);
       const double given = values.value[index].empty() ? 0.0 : values.value[index][0];
@@ -114,11 +114,12 @@ Eigen::MatrixXd turn_back(const Assembler<Dim>& assembler, const Eigen::MatrixXd
 }  // namespace
 
 template <int Dim>
-FieldCoefficients field_coefficients(const Assembler<Dim>& assembler,
-                                     const Eigen::Ref<const Eigen::VectorXd>& unknowns) {
+FieldCoefficients field_coefficients(const Assembler<Dim>& assembler, const Eigen::Ref<const Eigen::VectorXd>& unknowns,
+                                     int problem) {
   const SparseMatrix matrix = collocation_matrix(assembler.space());
   const FrameFields found = distribute(assembler, unknowns);
-  const FrameFields known = values_at_points<Dim>(assembler, matrix * found.potential);
+  const FrameFields known = values_at_points<Dim>(assembler, assembler.problems()[static_cast<std::size_t>(problem)],
+                                                  matrix * found.potential);
   Eigen::MatrixXd values(known.potential.rows(), 2 * known.potential.cols());
   values << known.potential, known.flux;
   if (values.cwiseAbs().maxCoeff() > 0.0) values = interpolate(matrix, values);
@@ -127,7 +128,7 @@ FieldCoefficients field_coefficients(const Assembler<Dim>& assembler,
           turn_back<Dim>(assembler, found.flux + values.rightCols(components))};
 }
 
-template FieldCoefficients field_coefficients<2>(const Assembler<2>&, const Eigen::Ref<const Eigen::VectorXd>&);
-template FieldCoefficients field_coefficients<3>(const Assembler<3>&, const Eigen::Ref<const Eigen::VectorXd>&);
+template FieldCoefficients field_coefficients<2>(const Assembler<2>&, const Eigen::Ref<const Eigen::VectorXd>&, int);
+template FieldCoefficients field_coefficients<3>(const Assembler<3>&, const Eigen::Ref<const Eigen::VectorXd>&, int);
 
 }  // namespace isorim::solver

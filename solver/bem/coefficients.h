@@ -12,10 +12,11 @@ struct FieldCoefficients {
   Eigen::MatrixXd flux;
 };
 
-/// From the unknowns of an Assembler (size() numbers) and the known data, which are interpolated at the collocation
-/// points: one sparse factorisation of the functions' values there. Throws NumericalError if it is singular.
+/// From the unknowns of an Assembler (size() numbers) and the known data of the problem with this number, which are
+/// interpolated at the collocation points: one sparse factorisation of the functions' values there. Throws
+/// NumericalError if it is singular.
 template <int Dim>
-FieldCoefficients field_coefficients(const Assembler<Dim>& assembler,
-                                     const Eigen::Ref<const Eigen::VectorXd>& unknowns);
+FieldCoefficients field_coefficients(const Assembler<Dim>& assembler, const Eigen::Ref<const Eigen::VectorXd>& unknowns,
+                                     int problem = 0);
 
 }  // namespace isorim::solver

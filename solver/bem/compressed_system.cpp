@@ -309,7 +309,7 @@ void add_target_terms(const Assembler<Dim>& assembler, const SideConditions<Dim>
                       HierarchicalMatrix& matrix, CompressedSystem& system) {
   const Index components = assembler.components();
   const auto mode_count = static_cast<Index>(assembler.flux_modes().size());
-  AssemblyRoom<Dim> room(assembler.problem());
+  AssemblyRoom<Dim> room(assembler.problems());
   for (std::int32_t point = 0; point < assembler.space().function_count(); ++point) {
     const auto of_point = sums.middleRows(point * components, components);
     Eigen::Matrix<double, Dim, Dim> double_layer = Eigen::Matrix<double, Dim, Dim>::Zero();
@@ -319,7 +319,8 @@ void add_target_terms(const Assembler<Dim>& assembler, const SideConditions<Dim>
     for (std::size_t a = 0; a < functions.size(); ++a)
       matrix.add_entries(point, functions[a],
                          terms.coefficients.middleCols(static_cast<Index>(a) * components, components));
-    system.right.segment(point * components, components) += of_point.col(components) + terms.right.head(components);
+    system.right.middleRows(point * components, components) +=
+        of_point.middleCols(components, assembler.right_sides()) + terms.right.topRows(components);
     system.columns.middleRows(point * components, components).leftCols(mode_count) =
         assembler.flux_scale() * of_point.rightCols(mode_count);
     for (std::size_t k = 0; k < sides.constants.size(); ++k)
@@ -351,8 +352,8 @@ CompressedSystem assemble_compressed(const Assembler<Dim>& assembler, const Side
   system.columns = MatrixXd::Zero(assembler.size(), side_count);
   system.rows = sides.rows;
   system.factor_tolerance = factor_tolerance_for(assembler.space());
-  system.right.resize(assembler.size() + side_count);
-  system.right << assembler.load_potentials(options.tolerance, options.threads).reshaped(), sides.right;
+  system.right.resize(assembler.size() + side_count, assembler.right_sides());
+  system.right << assembler.load_potentials(options.tolerance, options.threads), sides.right;
   add_target_terms(assembler, sides, source.sums(), *matrix, system);
   system.matrix = matrix;
   return system;
@@ -366,14 +367,22 @@ CompressedSolution solve_compressed(const CompressedSystem& system, const SolveO
   GmresOptions gmres_options;
   gmres_options.tolerance = residual_share * options.tolerance;
   gmres_options.max_iterations = options.max_iterations;
-  GmresResult found = gmres(matrix, system.right, gmres_options, &inverse);
-  if (found.status == GmresStatus::iteration_limit ||
-      (found.status == GmresStatus::stagnated && found.residual > 100.0 * options.tolerance)) {
-    throw NumericalError(
-        fmt::format("GMRES stopped after {} iterations at the relative residual {:.2e}; expected {:.1e}",
-                    found.iterations, found.residual, options.tolerance));
+  const Index count = system.right.cols();
+  CompressedSolution solution{MatrixXd(system.right.rows(), count), Eigen::VectorXi(count), VectorXd(count),
+                              system.matrix->memory() + factors.memory()};
+  for (Index k = 0; k < count; ++k) {
+    const GmresResult found = gmres(matrix, system.right.col(k), gmres_options, &inverse);
+    if (found.status == GmresStatus::iteration_limit ||
+        (found.status == GmresStatus::stagnated && found.residual > 100.0 * options.tolerance)) {
+      throw NumericalError(
+          fmt::format("GMRES stopped after {} iterations at the relative residual {:.2e}; expected {:.1e}",
+                      found.iterations, found.residual, options.tolerance));
+    }
+    solution.values.col(k) = found.x;
+    solution.iterations[k] = found.iterations;
+    solution.residual[k] = found.residual;
   }
-  return {std::move(found.x), found.iterations, found.residual, system.matrix->memory() + factors.memory()};
+  return solution;
 }
 
 template CompressedSystem assemble_compressed<2>(const Assembler<2>&, const SideConditions<2>&, const SolveOptions&);

@@ -13,12 +13,12 @@
 namespace isorim::solver {
 
 /// The equations with the coefficients of the functions in blocks of low rank, and those of the side conditions apart:
-///   [matrix columns; rows 0] [x; extra] = [right; right_of_rows].
+///   [matrix columns; rows 0] [x; extra] = [right; right_of_rows], a column of right for each of the problems.
 struct CompressedSystem {
   std::shared_ptr<const HierarchicalMatrix> matrix;
   Eigen::MatrixXd columns;
   Eigen::MatrixXd rows;
-  Eigen::VectorXd right;
+  Eigen::MatrixXd right;
   /// What the preconditioner needs to serve functions of this degree.
   double factor_tolerance = 1e-2;
 };
@@ -32,16 +32,17 @@ CompressedSystem assemble_compressed(const Assembler<Dim>& assembler, const Side
                                      const SolveOptions& options);
 
 struct CompressedSolution {
-  Eigen::VectorXd values;
-  int iterations = 0;
-  double residual = 0.0;
+  /// Like CompressedSystem::right; iterations and residual of each column.
+  Eigen::MatrixXd values;
+  Eigen::VectorXi iterations;
+  Eigen::VectorXd residual;
   /// Bytes of the matrix and of its factors.
   std::size_t memory = 0;
 };
 
-/// GMRES to a tenth of options.tolerance, preconditioned by a hierarchical LU factorisation at a loose tolerance (with
-/// the side conditions eliminated from it). Throws NumericalError, naming residual and iterations, if it does not
-/// converge.
+/// For each right side GMRES to a tenth of options.tolerance, preconditioned by one hierarchical LU factorisation at a
+/// loose tolerance (with the side conditions eliminated from it). Throws NumericalError, naming residual and
+/// iterations, if it does not converge.
 CompressedSolution solve_compressed(const CompressedSystem& system, const SolveOptions& options);
 
 }  // namespace isorim::solver

@@ -62,7 +62,8 @@ void set_rows(const Assembler<Dim>& assembler, const SideConditions<Dim>& sides,
     for (std::size_t a = 0; a < functions.size(); ++a)
       rows.middleCols(functions[a] * components, components) +=
           terms.coefficients.middleCols(static_cast<Eigen::Index>(a) * components, components);
-    system.right.segment(point * components, components) = sums.col(components) + terms.right.head(components);
+    system.right.middleRows(point * components, components) =
+        sums.middleCols(components, assembler.right_sides()) + terms.right.topRows(components);
     rows.middleCols(assembler.size(), mode_count) = assembler.flux_scale() * sums.rightCols(mode_count);
     for (std::size_t k = 0; k < sides.constants.size(); ++k)
       rows.col(assembler.size() + static_cast<Eigen::Index>(k)) = -sides.constants[k].head(components);
@@ -76,7 +77,7 @@ DenseSystem assemble_dense(const Assembler<Dim>& assembler, const SideConditions
                            const SolveOptions& options) {
   const auto extra = static_cast<Eigen::Index>(sides.count());
   const Eigen::Index size = assembler.size() + extra;
-  DenseSystem system{RowMatrix::Zero(size, size), Eigen::VectorXd::Zero(size)};
+  DenseSystem system{RowMatrix::Zero(size, size), Eigen::MatrixXd::Zero(size, assembler.right_sides())};
   std::vector<std::int32_t> all(static_cast<std::size_t>(assembler.space().function_count()));
   std::iota(all.begin(), all.end(), 0);
   const auto clusters = target_clusters(assembler.space());
@@ -94,10 +95,9 @@ DenseSystem assemble_dense(const Assembler<Dim>& assembler, const SideConditions
         set_rows(assembler, sides, groups[task], *room, system);
       },
       options.progress);
-  const Eigen::MatrixXd loads = assembler.load_potentials(options.tolerance, options.threads);
-  system.right.head(assembler.size()) += loads.reshaped();
+  system.right.topRows(assembler.size()) += assembler.load_potentials(options.tolerance, options.threads);
   system.matrix.block(assembler.size(), 0, extra, assembler.size()) = sides.rows;
-  system.right.tail(extra) = sides.right;
+  system.right.bottomRows(extra) = sides.right;
   return system;
 }
 
@@ -112,12 +112,17 @@ DenseSolution solve_dense(const DenseSystem& system, int threads) {
                     "number {:.1e}): do the conditions determine a solution?",
                     system.matrix.rows(), condition));
   }
-  DenseSolution solution;
-  solution.values = factors.solve(system.right);
-  const Eigen::VectorXd left = system.right - system.matrix * solution.values;
-  solution.values += factors.solve(left);
-  const double norm = system.right.norm();
-  if (norm > 0.0) solution.residual = (system.right - system.matrix * solution.values).norm() / norm;
+  DenseSolution solution{Eigen::MatrixXd(system.right.rows(), system.right.cols()),
+                         Eigen::VectorXd::Zero(system.right.cols())};
+  for (Eigen::Index k = 0; k < system.right.cols(); ++k) {
+    const auto right = system.right.col(k);
+    Eigen::VectorXd values = factors.solve(right);
+    const Eigen::VectorXd left = right - system.matrix * values;
+    values += factors.solve(left);
+    const double norm = right.norm();
+    if (norm > 0.0) solution.residual[k] = (right - system.matrix * values).norm() / norm;
+    solution.values.col(k) = values;
+  }
   return solution;
 }
 

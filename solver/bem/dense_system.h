@@ -14,7 +14,8 @@ namespace isorim::solver {
 /// All equations with every coefficient stored, those of the side conditions last.
 struct DenseSystem {
   RowMatrix matrix;
-  Eigen::VectorXd right;
+  /// A column for each of the problems.
+  Eigen::MatrixXd right;
 };
 
 /// Targets that lie together at a time, in parallel; the numbers do not depend on how many threads there are. Cost:
@@ -24,13 +25,14 @@ DenseSystem assemble_dense(const Assembler<Dim>& assembler, const SideConditions
                            const SolveOptions& options);
 
 struct DenseSolution {
-  Eigen::VectorXd values;
-  /// |A x - b| / |b|.
-  double residual = 0.0;
+  /// Like DenseSystem::right.
+  Eigen::MatrixXd values;
+  /// |A x - b| / |b| of each column.
+  Eigen::VectorXd residual;
 };
 
-/// LU with partial pivoting and one step of refinement. Throws NumericalError if an entry is not finite or the
-/// reciprocal condition number (1-norm, estimated) is below 1e-15.
+/// One LU with partial pivoting and one step of refinement for each right side. Throws NumericalError if an entry is
+/// not finite or the reciprocal condition number (1-norm, estimated) is below 1e-15.
 DenseSolution solve_dense(const DenseSystem& system, int threads);
 
 }  // namespace isorim::solver

@@ -34,7 +34,7 @@ geometry::Point<Dim> node_position(const NodeView<Dim>& nodes, std::size_t q) {
 template <int Dim>
 RowIntegrator<Dim>::RowIntegrator(const Assembler<Dim>& assembler)
     : assembler_(&assembler),
-      room_(assembler.problem()),
+      room_(assembler.problems()),
       number_(static_cast<std::size_t>(assembler.space().function_count()), -1),
       is_listed_(assembler.space().elements.size(), 0) {}
 
@@ -123,7 +123,7 @@ void RowIntegrator<Dim>::set_factors(int element, const View& nodes, const typen
         add_scaled(-s * assembler_->flux_scale(), nodes.weight.data(), n, of_single);
         break;
       case ConditionKind::robin:
-        for (std::size_t q = 0; q < n; ++q) of_single[q] = nodes.weight[q] * data.values->coefficient[c][q];
+        for (std::size_t q = 0; q < n; ++q) of_single[q] = nodes.weight[q] * data.values.front().coefficient[c][q];
         [[fallthrough]];
       case ConditionKind::flux:
         add_scaled(s, nodes.weight.data(), n, of_double);
@@ -152,40 +152,51 @@ void RowIntegrator<Dim>::set_share(int element, const View& nodes, const NodeBas
   multiply_by_function<Dim>(basis, field.degree, sum, share_);
 }
 
+/// What known values (column j of the double layer) and fluxes (of the single layer) stand for in the sums.
+template <int Dim>
+void RowIntegrator<Dim>::add_known_data(int element, std::size_t n, const ConditionValues<Dim>& values, std::size_t j,
+                                        double* of_double, double* of_single) const {
+  const Condition<Dim>& condition = assembler_->condition_on(element);
+  const double s = assembler_->sign();
+  for (std::size_t c = 0; c < condition.components.size(); ++c) {
+    const std::vector<double>& given = values.value[c];
+    if (given.empty()) continue;
+    const double axis = component_axis(condition, static_cast<int>(c))[static_cast<Index>(j)];
+    if (condition.components[c].kind == ConditionKind::value) {
+      for (std::size_t q = 0; q < n; ++q) of_double[q] -= s * axis * share_[q] * given[q];
+    } else if (condition.components[c].kind == ConditionKind::flux) {
+      for (std::size_t q = 0; q < n; ++q) of_single[q] += s * axis * share_[q] * given[q];
+    } else {
+      const std::vector<double>& coefficient = values.coefficient[c];
+      for (std::size_t q = 0; q < n; ++q) of_single[q] += axis * share_[q] * coefficient[q] * given[q];
+    }
+  }
+}
+
 template <int Dim>
 void RowIntegrator<Dim>::set_sum_factors(int element, const View& nodes,
                                          const typename Assembler<Dim>::NodeData& data) {
-  const Condition<Dim>& condition = assembler_->condition_on(element);
   const std::size_t n = nodes.size();
   const auto components = static_cast<std::size_t>(assembler_->components());
-  const double s = assembler_->sign();
+  const auto right_sides = static_cast<std::size_t>(assembler_->right_sides());
   const auto& modes = assembler_->flux_modes();
-  factors_.double_rows = 2;
-  factors_.single_rows = assembler_->needs_single_layer(element) ? 1 + static_cast<int>(modes.size()) : 0;
-  factors_.double_sums.assign(components * 2 * n, 0.0);
-  factors_.single_sums.assign(components * static_cast<std::size_t>(factors_.single_rows) * n, 0.0);
+  const std::size_t double_rows = 1 + right_sides;
+  const std::size_t single_rows = assembler_->needs_single_layer(element) ? right_sides + modes.size() : 0;
+  factors_.double_rows = static_cast<int>(double_rows);
+  factors_.single_rows = static_cast<int>(single_rows);
+  factors_.double_sums.assign(components * double_rows * n, 0.0);
+  factors_.single_sums.assign(components * single_rows * n, 0.0);
   for (std::size_t j = 0; j < components; ++j) {
-    double* of_double = factors_.double_sums.data() + j * 2 * n;
-    double* of_single = factors_.single_sums.data() + j * static_cast<std::size_t>(factors_.single_rows) * n;
+    double* of_double = factors_.double_sums.data() + j * double_rows * n;
+    double* of_single = factors_.single_sums.data() + j * single_rows * n;
     std::copy(share_.begin(), share_.end(), of_double);
-    for (std::size_t c = 0; c < components; ++c) {
-      const std::vector<double>& given = data.values->value[c];
-      if (given.empty()) continue;
-      const double axis = component_axis(condition, static_cast<int>(c))[static_cast<Index>(j)];
-      if (condition.components[c].kind == ConditionKind::value) {
-        for (std::size_t q = 0; q < n; ++q) of_double[n + q] -= s * axis * share_[q] * given[q];
-      } else if (condition.components[c].kind == ConditionKind::flux) {
-        for (std::size_t q = 0; q < n; ++q) of_single[q] += s * axis * share_[q] * given[q];
-      } else {
-        const std::vector<double>& coefficient = data.values->coefficient[c];
-        for (std::size_t q = 0; q < n; ++q) of_single[q] += axis * share_[q] * coefficient[q] * given[q];
-      }
-    }
+    for (std::size_t k = 0; k < right_sides; ++k)
+      add_known_data(element, n, data.values[k], j, of_double + (1 + k) * n, of_single + k * n);
     for (std::size_t m = 0; m < modes.size(); ++m) {
       if (!modes[m].moves(assembler_->space().body_of(element))) continue;
-      double* of_mode = of_single + (m + 1) * n;
+      double* of_mode = of_single + (right_sides + m) * n;
       for (std::size_t q = 0; q < n; ++q)
-        of_mode[q] = -s * share_[q] * modes[m](node_position(nodes, q))[static_cast<Index>(j)];
+        of_mode[q] = -assembler_->sign() * share_[q] * modes[m](node_position(nodes, q))[static_cast<Index>(j)];
     }
   }
 }
@@ -229,7 +240,7 @@ void RowIntegrator<Dim>::add_sums(std::size_t n, std::span<const int> targets, E
         const double* sums = partial_sums_.data() + t * width;
         const Index row = static_cast<Index>(targets[static_cast<std::size_t>(t)]) * components + i;
         rows.sums(row, j) += sums[0];
-        rows.sums(row, components) += sums[1];
+        for (int k = 1; k < factors_.double_rows; ++k) rows.sums(row, components + k - 1) += sums[k];
       }
       add_layer(single_values_, factors_.single_sums, i, j, factors_.single_rows);
       for (int t = 0; t < target_count; ++t) {

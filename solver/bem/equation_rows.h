@@ -13,21 +13,22 @@ namespace isorim::solver {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// What some functions give to the equations of some targets; C components, M flux modes. The functions of the whole
-/// space sum up to one, so the integrals over the boundary are the sums of these over any division of the functions.
+/// What some functions give to the equations of some targets; C components, R right sides, M flux modes. The functions
+/// of the whole space sum up to one, so the integrals over the boundary are the sums of these over any division of the
+/// functions.
 struct EquationRows {
   /// (targets C) x (functions C). Entry (t C + i, k C + c): what the unknown component c of the k-th function is
   /// multiplied by in equation i of target t, without the terms in u(x).
   RowMatrix coefficients;
-  /// (targets C) x (C + 1 + M), phi the sum of the functions. Row t C + i: int T_ij phi dS in column j < C, what known
-  /// data under phi give to the right side in column C, then -s int U r_m phi dS for each flux mode r_m.
+  /// (targets C) x (C + R + M), phi the sum of the functions. Row t C + i: int T_ij phi dS in column j < C, what known
+  /// data under phi give to the right sides in R columns, then -s int U r_m phi dS for each flux mode r_m.
   Eigen::MatrixXd sums;
 };
 
 /// Columns of EquationRows::sums.
 template <int Dim>
 Eigen::Index sum_count(const Assembler<Dim>& assembler) {
-  return assembler.components() + 1 + static_cast<Eigen::Index>(assembler.flux_modes().size());
+  return assembler.components() + assembler.right_sides() + static_cast<Eigen::Index>(assembler.flux_modes().size());
 }
 
 /// Integrates rows of the equations, element by element for all targets that an element serves by one rule, all of its
@@ -59,10 +60,10 @@ class RowIntegrator {
     /// Of the double and the single layer in the unknown component c.
     std::vector<double> of_double;
     std::vector<double> of_single;
-    /// double_rows of the double layer's column j, for the sums: phi, and known values if there are any.
+    /// double_rows of the double layer's column j, for the sums: phi, and each problem's known values.
     std::vector<double> double_sums;
     int double_rows = 0;
-    /// single_rows of the single layer's column j: known fluxes, flux modes.
+    /// single_rows of the single layer's column j: each problem's known fluxes, flux modes.
     std::vector<double> single_sums;
     int single_rows = 0;
   };
@@ -71,6 +72,8 @@ class RowIntegrator {
   void add_group(int element, const View& nodes, std::span<const int> targets, EquationRows& rows);
   void set_factors(int element, const View& nodes, const typename Assembler<Dim>::NodeData& data);
   void set_sum_factors(int element, const View& nodes, const typename Assembler<Dim>::NodeData& data);
+  void add_known_data(int element, std::size_t nodes, const ConditionValues<Dim>& values, std::size_t j,
+                      double* of_double, double* of_single) const;
   void set_share(int element, const View& nodes, const NodeBasis<Dim>& basis);
   void evaluate_kernels(int element, const View& nodes, std::span<const int> targets);
   void add_sums(std::size_t nodes, std::span<const int> targets, EquationRows& rows);

@@ -295,7 +295,7 @@ SideConditions<Dim> fix_motions(const Problem<Dim>& problem, const FieldSpace<Di
   SideConditions<Dim> result;
   const auto count = static_cast<Eigen::Index>(motions.size());
   result.rows.setZero(count, components * space.function_count());
-  result.right.setZero(count);
+  result.right.setZero(count, 1);
   RowSource<Dim> source{space, rules, {}, {}, {}, {}};
   for (Eigen::Index k = 0; k < count; ++k) {
     const RigidMotion<Dim>& motion = motions[static_cast<std::size_t>(k)];
@@ -318,14 +318,14 @@ SideConditions<2> fix_constants(const Problem<2>& problem, const FieldSpace<2>& 
   result.constants = held_directions(free, components);
   const auto count = static_cast<Eigen::Index>(result.constants.size());
   result.rows.setZero(count, components * space.function_count());
-  result.right.setZero(count);
+  result.right.setZero(count, 1);
   RowSource<2> source{space, rules, {}, {}, {}, {}};
   const double measure = measure_of(space, rules);
   for (Eigen::Index k = 0; k < count; ++k) {
     RigidMotion<2> motion;
     motion.translation = result.constants[static_cast<std::size_t>(k)];
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(result.rows.cols());
-    fill_flux_row(problem, source, motion, measure, flux_scale, row, result.right[k]);
+    fill_flux_row(problem, source, motion, measure, flux_scale, row, result.right(k, 0));
     result.rows.row(k) = row;
   }
   return result;
@@ -341,6 +341,7 @@ SideConditions<Dim> side_conditions(const Problem<Dim>& problem, const FieldSpac
       return fix_constants(problem, space, rules, free_motions(problem, space), flux_scale, threads);
     SideConditions<Dim> none;
     none.rows.resize(0, component_count(problem.equation) * space.function_count());
+    none.right.resize(0, 1);
     return none;
   }
   return fix_motions(problem, space, rules, free_motions(problem, space), threads);

@@ -29,9 +29,9 @@ struct SideConditions {
   std::vector<RigidMotion<Dim>> flux_modes;
   /// Directions of the constants of exterior problems in the plane: columns -direction at every collocation point.
   std::vector<geometry::Vector<Dim>> constants;
-  /// count x size of the system without them, and the right sides.
+  /// count x size of the system without them, and the right sides, a column for each problem.
   Eigen::MatrixXd rows;
-  Eigen::VectorXd right;
+  Eigen::MatrixXd right;
   std::vector<std::string> messages;
 
   std::size_t count() const { return flux_modes.size() + constants.size(); }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -63,5 +64,13 @@ struct Solution {
 /// singular system or iterations that do not converge.
 template <int Dim>
 Solution<Dim> solve(const Problem<Dim>& problem, const FieldSpace<Dim>& space, const SolveOptions& options);
+
+/// Problems that differ in what is given alone (values, fluxes, references, loads): the equations are integrated and
+/// factored once. Same equation, domain, kinds of conditions and frames, and the same Robin coefficients (which cannot
+/// be compared: those of the first count). Errors as those of solve(), and InputError, naming the problem, if they
+/// differ in more.
+template <int Dim>
+std::vector<Solution<Dim>> solve_all(std::span<const Problem<Dim>> problems, const FieldSpace<Dim>& space,
+                                     const SolveOptions& options);
 
 }  // namespace isorim::solver

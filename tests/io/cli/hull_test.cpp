@@ -100,6 +100,16 @@ TEST_F(Hull, LivesInALibrary) {
   EXPECT_EQ(run({"hulls", "export", library, "s60", path("back.csv")}).status, 2);
 }
 
+TEST_F(Hull, IsFairedWithinATolerance) {
+  const std::string library = path("hulls.h5");
+  ASSERT_EQ(run({"hulls", "import", library, series60, "--name", "s60"}).status, 0);
+  const ProgramResult faired = run({"hulls", "export", library, "s60", path("fair.csv"), "--fair", "0.00025"});
+  ASSERT_EQ(faired.status, 0) << faired.err;
+  EXPECT_THAT(faired.out, HasSubstr("half-breadths moved, by 0.00025 at most"));
+  EXPECT_EQ(run({"hulls", "import", library, path("fair.csv"), "--name", "fair"}).status, 0);
+  EXPECT_EQ(run({"hulls", "export", library, "s60", path("bad.csv"), "--fair", "0"}).status, 2);
+}
+
 class BadHull : public BadCaseTest {};
 
 TEST_P(BadHull, IsRefused) {

@@ -87,5 +87,65 @@ TEST_F(HydrostaticCases, RefuseAnOpenBoundary) {
   EXPECT_THAT(result.err, HasSubstr("hydrostatics need a closed boundary"));
 }
 
+// The table of a hull says where draughts, amidships and coefficients count from.
+TEST_F(HydrostaticCases, OfAHullCountAsItsTableDoes) {
+  const ProgramResult result = run_case(
+      "[geometry]\ntype = 'hull'\noffsets = 'wigley'\nscale = { length = 10, beam = 1, draught = 0.625 }\n"
+      "[hydrostatics]\ndraught = 0.46875\n");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = results().at("hydrostatics");
+  const auto value = [&](const char* name) { return json.at(name).at("value").get<double>(); };
+  // hull_wigley.toml.
+  EXPECT_NEAR(value("volume"), 1.7578125, 1e-12);
+  EXPECT_NEAR(value("waterplane_area"), 6.25, 1e-12);
+  EXPECT_EQ(value("length"), 10.0);
+  EXPECT_EQ(value("beam"), 1.0);
+  EXPECT_NEAR(value("cb"), 1.7578125 / (10.0 * 1.0 * 0.46875), 1e-12);
+}
+
+TEST_F(HydrostaticCases, HaveAddedMasses) {
+  const ProgramResult result = run_case(
+      "[geometry]\ntype = 'sphere'\nradius = 1\ncentre = [1, 0, 0]\n[added_mass]\nwater_density = 3\ndegree = 2\n"
+      "[expect]\n'added_mass.surge' = { value = 0.5, atol = 1e-9 }\n");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("added mass"));
+  const auto json = results().at("added_mass");
+  const double mass = 2.0 / 3.0 * std::numbers::pi * 3.0;
+  EXPECT_NEAR(json.at("displaced_mass").get<double>(), 2.0 * mass, 1e-9);
+  EXPECT_NEAR(json.at("matrix")[1][5].get<double>(), mass, 1e-8);
+  EXPECT_NEAR(json.at("matrix")[4][4].get<double>(), mass, 1e-8);
+  EXPECT_LT(json.at("error")[0][0].get<double>(), 1e-8);
+  EXPECT_TRUE(json.at("waterplane").is_null());
+}
+
+TEST_F(HydrostaticCases, HaveHalfTheAddedMassOfADoubleBody) {
+  // The lower half of a sphere: half of what the sphere has, about a centre in the water.
+  const ProgramResult result =
+      run_case("[geometry]\ntype = 'sphere'\nradius = 1\n[added_mass]\ndraught = 1\ndegree = 2\n");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = results().at("added_mass");
+  EXPECT_NEAR(json.at("displaced_mass").get<double>(), 2.0 / 3.0 * std::numbers::pi, 1e-9);
+  EXPECT_NEAR(json.at("matrix")[0][0].get<double>(), std::numbers::pi / 3.0, 1e-4);
+  EXPECT_NEAR(json.at("matrix")[2][2].get<double>(), std::numbers::pi / 3.0, 1e-4);
+  EXPECT_NEAR(json.at("waterplane").get<double>(), 0.0, 1e-12);
+}
+
+TEST_F(HydrostaticCases, RefuseAddedMassesThatMeanNothing) {
+  const std::string sphere = "[geometry]\ntype = 'sphere'\nradius = 1\n[added_mass]\n";
+  const auto refused = [&](const std::string& keys, const char* fragment) {
+    const ProgramResult result = run_case(sphere + keys);
+    EXPECT_EQ(result.status, 2) << keys;
+    EXPECT_THAT(result.err, HasSubstr(fragment));
+  };
+  refused("draught = 3\n", "draught: the water lies at z = 2; expected it between the lowest and the highest point");
+  refused("draught = 1\ncentre = [0, 0, 1]\n", "centre: it lies at z = 1; expected it in the water");
+  refused("refine = 0\n", "added_mass.refine");
+  refused("baseline = 0\n", "needs a \"draught\"");
+  refused("centre = [0, 0]\n", "found 2 coordinates; expected 3");
+  const ProgramResult plane = run_case("[geometry]\ntype = 'circle'\nradius = 1\n[added_mass]\n");
+  EXPECT_EQ(plane.status, 2);
+  EXPECT_THAT(plane.err, HasSubstr("added masses are for solids"));
+}
+
 }  // namespace
 }  // namespace isorim::testing

@@ -140,6 +140,11 @@ TEST(OffsetFile, RefusesWithLineAndColumn) {
   expect_refused(cargo, "10,aft", "10,back", "found stations 10, back");
   expect_refused(cargo, "tangent,1", "tangens,1", "bad.csv:9: column 2: found \"tangens\"");
   expect_refused(cargo, "5,1,1,1,1.4,1,1", "5,1,1,1,1.4,1", "bad.csv:12: found 6 cells; expected 7");
+  expect_refused(cargo, "5,1,1,1,1.4,1,1", "5,1,1,1,1,4,1,1",
+                 "bad.csv:12: found 8 cells; expected 7, as in the head of "
+                 "the table (numbers have points, not commas)");
+  expect_refused(cargo, "length,100", "length;100", "bad.csv:3: found \"length;100\"; expected cells with commas");
+  expect_refused(cargo, "length,100", "length,100 m", "bad.csv:3: column 2 (length): found \"100 m\"");
   expect_refused(cargo, "max,0.7,1,0.95,,1,\n", "", "found no row \"max\"");
   expect_refused(cargo, "10,0,0.5", "5,0,0.5", "station 5 is there twice");
   expect_refused(cargo, "deck height", "deck half-breadth", "is there twice");
