@@ -37,8 +37,8 @@ void write_xml(const std::filesystem::path& path, vtkXMLWriter* writer, vtkDataO
   }
   writer->SetFileName(file.temporary().c_str());
   writer->SetInputData(data);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
+  // Not appended: newer releases of expat, and ParaView with them, fail on what stands behind the elements.
+  writer->SetDataModeToBinary();
   writer->SetCompressorTypeToNone();
   writer->SetHeaderTypeToUInt64();
   const bool written = writer->Write() == 1 && writer->GetErrorCode() == vtkErrorCode::NoError && messages.empty();
