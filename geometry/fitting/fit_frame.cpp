@@ -93,9 +93,9 @@ FitFrame<Dim> FitFrame<Dim>::thinned(int stride) const {
 }
 
 template <int Dim>
-FitFrame<Dim> FitFrame<Dim>::reweighted(std::vector<double> weights) const {
+FitFrame<Dim> FitFrame<Dim>::reweighted(const std::vector<double>& weights) const {
   FitFrame result = *this;
-  result.prepared_.data.weights = std::move(weights);
+  result.prepared_.data.weights = weights;
   return result;
 }
 

@@ -36,7 +36,7 @@ class FitFrame {
   /// The same with every stride-th point, corners and ends among them.
   FitFrame thinned(int stride) const;
   /// The same with other weights of the prepared points: positive, of mean 1.
-  FitFrame reweighted(std::vector<double> weights) const;
+  FitFrame reweighted(const std::vector<double>& weights) const;
 
   const PreparedPoints<Dim>& prepared() const { return prepared_; }
   const CurveFitOptions<Dim>& options() const { return options_; }

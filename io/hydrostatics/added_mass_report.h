@@ -25,8 +25,8 @@ struct AddedMassReport {
   double time = 0.0;
 };
 
-/// Of a closed, oriented boundary. Throws GeometryError where the keys make no sense for it (a draught that covers all of
-/// the solid, a centre out of the water of a double body), and as solver::added_mass() does.
+/// Of a closed, oriented boundary. Throws GeometryError where the keys make no sense for it (a draught that covers all
+/// of the solid, a centre out of the water of a double body), and as solver::added_mass() does.
 AddedMassReport compute_added_mass(const AddedMassKeys& keys, const geometry::OrientedBoundary<3>& boundary,
                                    int threads, const std::function<void(double)>& progress);
 

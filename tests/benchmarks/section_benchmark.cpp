@@ -24,7 +24,7 @@ geometry::Boundary<3> drilled_blocks() {
     for (int j = 0; j < 6; ++j)
       for (geometry::Patch<3> patch :
            geometry::transform(one, geometry::translation<3>(Vector3(1.5 * i, 1.5 * j, 0.1 * i))).patches) {
-        patch.name += "_" + std::to_string(6 * i + j);
+        patch.name.append("_").append(std::to_string(6 * i + j));
         all.patches.push_back(std::move(patch));
       }
   return all;

@@ -235,7 +235,7 @@ TEST_P(PropellerFiles, KeepTheScrew) {
   const std::string fine = "[properties]\ntolerance = 1e-10\n";
   const std::string screw = kaplan + GetParam() + fine;
   ASSERT_EQ(run_case(screw).status, 0);
-  const nlohmann::json own = results()["properties"];
+  const nlohmann::json direct = results()["properties"];
   ASSERT_EQ(run({"convert", (folder() / "case.toml").string(), (folder() / "screw.igs").string()}).status, 0);
   const ProgramResult again = run_case("[geometry]\ntype = 'file'\npath = 'screw.igs'\n" + fine);
   ASSERT_EQ(again.status, 0) << again.err;
@@ -243,17 +243,17 @@ TEST_P(PropellerFiles, KeepTheScrew) {
   EXPECT_TRUE(all["geometry"]["closed"]);
   EXPECT_LE(all["geometry"]["closure_defect"].get<double>(), 1e-12);
   for (const char* name : {"area", "volume"}) {
-    const double value = own[name]["value"];
+    const double value = direct[name]["value"];
     EXPECT_NEAR(all["properties"][name]["value"].get<double>(), value, 1e-9 * value) << name;
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    const double moment = own["inertia"]["value"][i][i];
+    const double moment = direct["inertia"]["value"][i][i];
     EXPECT_NEAR(all["properties"]["inertia"]["value"][i][i].get<double>(), moment, 1e-9 * moment);
   }
   write("mesh.toml", screw + "[output]\nstl_tolerance = 0.05\n");
   ASSERT_EQ(run({"convert", (folder() / "mesh.toml").string(), (folder() / "screw.stl").string()}).status, 0);
-  const double volume = own["volume"]["value"];
-  const double area = own["area"]["value"];
+  const double volume = direct["volume"]["value"];
+  const double area = direct["area"]["value"];
   EXPECT_NEAR(volume_of_stl(read_file(folder() / "screw.stl")), volume, 0.05 * area);
 }
 
