@@ -105,43 +105,75 @@ void append_tensor(const Cell<2>& cell, const std::array<DirectionRule, 2>& rule
   }
 }
 
-/// How the speeds of the parameters change over a cell.
+/// Squared lengths of steps in the parameters, in units of those at the pole.
+class PoleMetric {
+ public:
+  explicit PoleMetric(const ElementJet<3>& pole) {
+    constexpr double least_sine = 1e-4;
+    constexpr double least_speed = 1e-9;
+    const double speed = std::max(pole.first[0].norm(), pole.first[1].norm());
+    u_ = std::max(pole.first[0].norm(), least_speed * speed);
+    const double along = pole.first[0].dot(pole.first[1]) / u_;
+    const double v = std::max(pole.first[1].norm(), least_speed * speed);
+    shift_ = std::clamp(along, -v, v) / u_;
+    height_ = std::max(std::sqrt(std::max(v * v - along * along, 0.0)), least_sine * v);
+  }
+
+  /// Of the tangents elsewhere.
+  Eigen::Matrix2d seen(const std::array<geometry::Vector3, 2>& tangents) const {
+    const geometry::Vector3 first = tangents[0] / u_;
+    const geometry::Vector3 second = (tangents[1] - shift_ * tangents[0]) / height_;
+    Eigen::Matrix2d metric;
+    metric << first.dot(first), first.dot(second), first.dot(second), second.dot(second);
+    return metric;
+  }
+
+ private:
+  /// Steps of 1 / u in the first parameter, and of 1 / height in the second with -shift / height in the first, are
+  /// orthonormal at the pole.
+  double u_ = 1.0;
+  double shift_ = 0.0;
+  double height_ = 1.0;
+};
+
+/// The larger eigenvalue.
+double most_stretch(const Eigen::Matrix2d& metric) {
+  const double mean = 0.5 * (metric(0, 0) + metric(1, 1));
+  return mean + std::hypot(0.5 * (metric(0, 0) - metric(1, 1)), metric(0, 1));
+}
+
+/// How the metric changes over a cell.
 struct Distortion {
-  /// The largest ratio of a speed in the cell to that at the pole.
+  /// The largest ratio of a step's length in the cell to that of the same step at the pole.
   double ratio = 1.0;
-  /// By how much of the largest speed one changes, in the direction where it does most.
+  /// By how much of its largest value the metric changes, in the direction where it does most.
   double change = 0.0;
   std::size_t direction = 0;
 };
 
-Distortion distortion(const NearRequest<3>& request, const Cell<2>& cell, const ElementJet<3>& jet) {
+/// Sheared elements are narrower than their speeds tell: what counts is the metric as seen by that at the pole.
+Distortion distortion(const NearRequest<3>& request, const Cell<2>& cell, const PoleMetric& metric) {
   constexpr std::size_t count = 3;
-  std::array<std::array<std::array<double, count>, count>, 2> speed;
-  std::array<double, 2> largest{};
+  std::array<std::array<Eigen::Matrix2d, count>, count> seen;
+  double largest = 0.0;
   for (std::size_t k = 0; k < count * count; ++k) {
     const std::size_t across = k / count;
     const geometry::Point2 fraction(0.5 * static_cast<double>(k % count), 0.5 * static_cast<double>(across));
     const geometry::Point2 at = cell.lower + fraction.cwiseProduct(cell.upper - cell.lower);
-    const ElementJet<3> there = element_jet(request.shape->net, at, request.target);
-    for (std::size_t d = 0; d < 2; ++d) {
-      speed[d][k % count][across] = there.first[d].norm();
-      largest[d] = std::max(largest[d], there.first[d].norm());
-    }
+    seen[k % count][across] = metric.seen(element_jet(request.shape->net, at, request.target).first);
+    largest = std::max(largest, most_stretch(seen[k % count][across]));
   }
   Distortion result;
-  for (std::size_t d = 0; d < 2; ++d) {
-    if (largest[d] == 0.0) continue;
-    result.ratio = std::max(result.ratio, largest[d] / std::max(jet.first[d].norm(), 1e-9 * largest[d]));
-    for (std::size_t k = 0; k < count * (count - 1); ++k) {
-      const std::size_t along = k % (count - 1);
-      const std::size_t across = k / (count - 1);
-      const std::array<double, 2> change{std::abs(speed[d][along + 1][across] - speed[d][along][across]) / largest[d],
-                                         std::abs(speed[d][across][along + 1] - speed[d][across][along]) / largest[d]};
-      for (std::size_t direction = 0; direction < 2; ++direction) {
-        if (change[direction] <= result.change) continue;
-        result.change = change[direction];
-        result.direction = direction;
-      }
+  result.ratio = std::max(1.0, std::sqrt(largest));
+  for (std::size_t k = 0; k < count * (count - 1); ++k) {
+    const std::size_t along = k % (count - 1);
+    const std::size_t across = k / (count - 1);
+    const std::array<double, 2> change{(seen[along + 1][across] - seen[along][across]).norm() / (2.0 * largest),
+                                       (seen[across][along + 1] - seen[across][along]).norm() / (2.0 * largest)};
+    for (std::size_t direction = 0; direction < 2; ++direction) {
+      if (change[direction] <= result.change) continue;
+      result.change = change[direction];
+      result.direction = direction;
     }
   }
   return result;
@@ -194,7 +226,7 @@ void append_cell(const NearRequest<3>& request, const Cell<2>& cell, const Neare
   const std::size_t longer = length[1] > length[0] ? 1 : 0;
   if (length[longer] > most_aspect * length[1 - longer] && depth < most_bisections)
     return append_halves(request, cell, longer, nearest, depth, nodes);
-  const Distortion metric = distortion(request, cell, nearest.jet);
+  const Distortion metric = distortion(request, cell, PoleMetric(nearest.jet));
   const bool is_even = metric.ratio <= most_distortion && polar.most_points_on_a_line() <= most_points;
   if (!is_even && metric.change >= least_change && depth < most_bisections)
     return append_halves(request, cell, metric.direction, nearest, depth, nodes);

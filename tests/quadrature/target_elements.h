@@ -120,4 +120,17 @@ inline geometry::ElementTable<3> random_element(std::mt19937& generator) {
   return table;
 }
 
+/// A rational element between (0, 0), (1, 0) and (shear, 1), (1 + shear, 1), as thin as that makes it, bent and uneven
+/// by a third of how thin it is.
+inline geometry::ElementTable<3> sheared_element(double shear, std::mt19937& generator) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const double bend = 0.3 / shear;
+  return surface_element(2, 2, [&](double u, double v) {
+    const double x = u + shear * v + bend * unit(generator);
+    const double y = v + bend * unit(generator);
+    const double z = 2.0 * bend * unit(generator);
+    return NetPoint(x, y, z, 1.0 + 0.3 * unit(generator));
+  });
+}
+
 }  // namespace isorim::quadrature::testing

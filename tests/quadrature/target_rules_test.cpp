@@ -207,6 +207,26 @@ TEST(TargetRules, FreshRandomElementsKeepTheTolerance) {
   }
 }
 
+// Their speeds hardly change: it is the metric that does.
+TEST(TargetRules, ShearedElementsKeepTheTolerance) {
+  constexpr double allowed = 1e-10;
+  std::mt19937 generator(31);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (int k = 0; k < 6; ++k) {
+    const double shear = 10.0 * std::pow(0.5, unit(generator));
+    const ElementTable<3> table = testing::sheared_element(shear, generator);
+    const Point2 place(unit(generator), unit(generator));
+    const Target<3> own = own_target(table, place);
+    expect_errors(errors(table, own, 1e-12), {allowed, allowed, 0, 0}, words("sheared " + std::to_string(k), own, 0.0));
+    const double distance = std::pow(10.0, -4.0 + 5.0 * unit(generator));
+    const Target<3> near = near_target(table, place, distance);
+    const double rounding = 1e-15 / distance;
+    expect_errors(errors(table, near, 1e-12),
+                  {allowed, allowed + rounding, allowed + rounding, 10 * (allowed + rounding)},
+                  words("sheared " + std::to_string(k), near, distance));
+  }
+}
+
 /// Errors of a kept rule for a target, as errors() has them.
 double far_error(const ElementTable<3>& table, const NodeView<3>& nodes, const Point3& target) {
   double sum = 0.0;
