@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "geometry/intersection/angle_gap.h"
 #include "geometry/intersection/chebyshev_fit.h"
 #include "geometry/intersection/directed_loops.h"
 #include "geometry/intersection/tool_caps.h"
@@ -262,17 +263,7 @@ void turn_seam_away(Frame& frame, const std::vector<CapEdge>& edges) {
       angles.push_back(std::atan2(p.y(), p.x()));
     }
   if (angles.empty()) return;
-  std::sort(angles.begin(), angles.end());
-  angles.push_back(angles.front() + 2.0 * pi);
-  double widest = 0.0;
-  double seam = 0.0;
-  for (std::size_t i = 0; i + 1 < angles.size(); ++i) {
-    const double gap = angles[i + 1] - angles[i];
-    if (gap <= widest) continue;
-    widest = gap;
-    seam = angles[i] + 0.4637 * gap;
-  }
-  const CosineSine turn = cosine_sine(seam);
+  const CosineSine turn = cosine_sine(angle_in_widest_gap(std::move(angles), 2.0 * pi));
   const Vector3 first = turn.cosine * frame.axes.col(0) + turn.sine * frame.axes.col(1);
   frame.axes.col(1) = turn.cosine * frame.axes.col(1) - turn.sine * frame.axes.col(0);
   frame.axes.col(0) = first;

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/intersection/angle_gap.h"
 #include "geometry/intersection/chebyshev_fit.h"
 #include "geometry/intersection/tool_caps.h"
 #include "geometry/propeller/blade_foot.h"
@@ -74,26 +75,14 @@ Vector2 around_shaft(const Point3& point, double angle) {
 
 /// The angle about the shaft in the middle, nearly, of the widest gap between the feet of all blades.
 double seam_between(const std::vector<CutFace>& faces, int count) {
-  const double turn = two_pi / count;
   std::vector<double> angles;
   for (const CutFace& face : faces)
     for (const BladeFoot::Piece& piece : face.foot)
       for (int k = 0; k < 8; ++k) {
         const Vector2 place = around_shaft(evaluate(face.surface, evaluate(piece.curve, k / 8.0)), 0.0);
-        const double angle = std::fmod(std::atan2(place.y(), place.x()), turn);
-        angles.push_back(angle < 0.0 ? angle + turn : angle);
+        angles.push_back(std::atan2(place.y(), place.x()));
       }
-  std::ranges::sort(angles);
-  angles.push_back(angles.front() + turn);
-  double widest = 0.0;
-  double seam = 0.0;
-  for (std::size_t i = 0; i + 1 < angles.size(); ++i) {
-    const double gap = angles[i + 1] - angles[i];
-    if (gap <= widest) continue;
-    widest = gap;
-    seam = angles[i] + 0.4637 * gap;
-  }
-  return seam;
+  return angle_in_widest_gap(std::move(angles), two_pi / count);
 }
 
 /// Brings pieces of feet to the parameters of the hub's legs.
