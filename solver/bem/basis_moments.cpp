@@ -27,49 +27,6 @@ void fill_rows(int degree, std::span<const double> places, int step, std::vector
   }
 }
 
-/// The weight function of the element's net at every node of a curve.
-void fill_reciprocals(const geometry::ElementTable<2>& table, const geometry::BezierElement<2>& element,
-                      const NodeView<2>& nodes, std::vector<double>& result, std::vector<double>& room) {
-  const int p = element.degree[0];
-  const std::size_t n = nodes.size();
-  const std::span<const double> net = table.net(element);
-  room.resize(static_cast<std::size_t>(p + 1) * n);
-  bernstein_values(p, static_cast<int>(n), nodes.place[0].data(), room.data(), static_cast<std::ptrdiff_t>(n));
-  result.assign(n, 0.0);
-  for (int i = 0; i <= p; ++i) {
-    const double weight = net[static_cast<std::size_t>(3 * i + 2)];
-    const double* values = room.data() + static_cast<std::size_t>(i) * n;
-    for (std::size_t q = 0; q < n; ++q) result[q] += weight * values[q];
-  }
-  for (double& w : result) w = 1.0 / w;
-}
-
-/// Likewise of a surface.
-void fill_reciprocals(const geometry::ElementTable<3>& table, const geometry::BezierElement<3>& element,
-                      const NodeView<3>& nodes, std::vector<double>& result, std::vector<double>& room) {
-  const int p = element.degree[0];
-  const int r = element.degree[1];
-  const std::size_t n = nodes.size();
-  const auto step = static_cast<std::ptrdiff_t>(n);
-  const std::span<const double> net = table.net(element);
-  room.resize(static_cast<std::size_t>(p + r + 3) * n);
-  double* s_values = room.data();
-  double* t_values = s_values + static_cast<std::size_t>(p + 1) * n;
-  double* row = t_values + static_cast<std::size_t>(r + 1) * n;
-  bernstein_values(p, static_cast<int>(n), nodes.place[0].data(), s_values, step);
-  bernstein_values(r, static_cast<int>(n), nodes.place[1].data(), t_values, step);
-  result.assign(n, 0.0);
-  for (int j = 0; j <= r; ++j) {
-    std::fill(row, row + n, 0.0);
-    for (int i = 0; i <= p; ++i) {
-      const double weight = net[static_cast<std::size_t>(4 * (j * (p + 1) + i) + 3)];
-      for (std::size_t q = 0; q < n; ++q) row[q] += weight * s_values[static_cast<std::size_t>(i) * n + q];
-    }
-    for (std::size_t q = 0; q < n; ++q) result[q] += row[q] * t_values[static_cast<std::size_t>(j) * n + q];
-  }
-  for (double& w : result) w = 1.0 / w;
-}
-
 /// Bernstein moments of a curve's element: moments[f * (p + 1) + i].
 void bernstein_moments(const NodeBasis<2>& basis, int p, const double* integrands, int count, MomentScratch& scratch) {
   const int step = basis.step[0];
@@ -134,6 +91,47 @@ void bernstein_moments(const NodeBasis<3>& basis, int p, int q, const double* in
 
 }  // namespace
 
+void fill_reciprocal_weights(const geometry::ElementTable<2>& table, const geometry::BezierElement<2>& element,
+                             const NodeView<2>& nodes, std::vector<double>& result, std::vector<double>& room) {
+  const int p = element.degree[0];
+  const std::size_t n = nodes.size();
+  const std::span<const double> net = table.net(element);
+  room.resize(static_cast<std::size_t>(p + 1) * n);
+  bernstein_values(p, static_cast<int>(n), nodes.place[0].data(), room.data(), static_cast<std::ptrdiff_t>(n));
+  result.assign(n, 0.0);
+  for (int i = 0; i <= p; ++i) {
+    const double weight = net[static_cast<std::size_t>(3 * i + 2)];
+    const double* values = room.data() + static_cast<std::size_t>(i) * n;
+    for (std::size_t q = 0; q < n; ++q) result[q] += weight * values[q];
+  }
+  for (double& w : result) w = 1.0 / w;
+}
+
+void fill_reciprocal_weights(const geometry::ElementTable<3>& table, const geometry::BezierElement<3>& element,
+                             const NodeView<3>& nodes, std::vector<double>& result, std::vector<double>& room) {
+  const int p = element.degree[0];
+  const int r = element.degree[1];
+  const std::size_t n = nodes.size();
+  const auto step = static_cast<std::ptrdiff_t>(n);
+  const std::span<const double> net = table.net(element);
+  room.resize(static_cast<std::size_t>(p + r + 3) * n);
+  double* s_values = room.data();
+  double* t_values = s_values + static_cast<std::size_t>(p + 1) * n;
+  double* row = t_values + static_cast<std::size_t>(r + 1) * n;
+  bernstein_values(p, static_cast<int>(n), nodes.place[0].data(), s_values, step);
+  bernstein_values(r, static_cast<int>(n), nodes.place[1].data(), t_values, step);
+  result.assign(n, 0.0);
+  for (int j = 0; j <= r; ++j) {
+    std::fill(row, row + n, 0.0);
+    for (int i = 0; i <= p; ++i) {
+      const double weight = net[static_cast<std::size_t>(4 * (j * (p + 1) + i) + 3)];
+      for (std::size_t q = 0; q < n; ++q) row[q] += weight * s_values[static_cast<std::size_t>(i) * n + q];
+    }
+    for (std::size_t q = 0; q < n; ++q) result[q] += row[q] * t_values[static_cast<std::size_t>(j) * n + q];
+  }
+  for (double& w : result) w = 1.0 / w;
+}
+
 template <int Dim>
 void fill_node_basis(const FieldSpace<Dim>& space, int element, const NodeView<Dim>& nodes, NodeBasis<Dim>& basis,
                      MomentScratch& scratch) {
@@ -163,7 +161,7 @@ void fill_node_basis(const FieldSpace<Dim>& space, int element, const NodeView<D
   basis.reciprocal_weight.clear();
   const geometry::BezierElement<Dim>& bezier = space.table.elements[index];
   if (field.rational && !bezier.polynomial)
-    fill_reciprocals(space.table, bezier, nodes, basis.reciprocal_weight, scratch.bernstein);
+    fill_reciprocal_weights(space.table, bezier, nodes, basis.reciprocal_weight, scratch.bernstein);
 }
 
 template <int Dim>

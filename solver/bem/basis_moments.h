@@ -36,6 +36,14 @@ struct MomentScratch {
   std::vector<double> places;
 };
 
+/// 1 / w at every node, w the weight function of the element's net.
+void fill_reciprocal_weights(const geometry::ElementTable<2>& table, const geometry::BezierElement<2>& element,
+                             const quadrature::NodeView<2>& nodes, std::vector<double>& result,
+                             std::vector<double>& room);
+void fill_reciprocal_weights(const geometry::ElementTable<3>& table, const geometry::BezierElement<3>& element,
+                             const quadrature::NodeView<3>& nodes, std::vector<double>& result,
+                             std::vector<double>& room);
+
 /// Fills `basis`, keeping its memory.
 template <int Dim>
 void fill_node_basis(const FieldSpace<Dim>& space, int element, const quadrature::NodeView<Dim>& nodes,

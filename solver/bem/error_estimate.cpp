@@ -103,12 +103,7 @@ class ResidualEstimator {
     for (const Sample<Dim>& sample : samples_) targets.push_back(sample.target);
     const Eigen::MatrixXd loads = domain_potentials<Dim>(problem_.loads, space_.table, rules_, targets,
                                                          {options_.tolerance, options_.threads}, space_.coarse.get());
-    std::vector<double> squares(samples_.size());
-    quadrature::parallel_for(samples_.size(), options_.threads, [&](std::size_t i, int thread) {
-      Eigen::VectorXd residual = equation(targets[i], *rooms_[static_cast<std::size_t>(thread)]);
-      if (!problem_.loads.empty()) residual += loads.col(static_cast<Eigen::Index>(i));
-      squares[i] = samples_[i].weight * residual.squaredNorm();
-    });
+    const std::vector<double> squares = squared_residuals(loads);
     std::vector<double> result(space_.elements.size(), 0.0);
     for (std::size_t e = 0; e < result.size(); ++e) {
       double sum = 0.0;
@@ -146,23 +141,53 @@ class ResidualEstimator {
     first_.push_back(samples_.size());
   }
 
-  /// int U t dS - int T (u - u(x)) dS, and for exterior problems + u(x) less what the field tends to: with the loads,
-  /// the residual.
-  Eigen::VectorXd equation(const quadrature::Target<Dim>& target, RepresentationRoom<Dim>& room) const {
+  /// Weighted squares of the samples' residuals.
+  std::vector<double> squared_residuals(const Eigen::MatrixXd& loads) {
+    constexpr std::size_t batch = Representation<Dim>::batch;
+    std::vector<double> squares(samples_.size());
+    quadrature::parallel_for(
+        (samples_.size() + batch - 1) / batch, options_.threads, [&](std::size_t task, int thread) {
+          const std::size_t first = task * batch;
+          const std::size_t count = std::min(batch, samples_.size() - first);
+          const Eigen::MatrixXd residuals = equations(first, count, *rooms_[static_cast<std::size_t>(thread)]);
+          for (std::size_t i = 0; i < count; ++i) {
+            Eigen::VectorXd residual = residuals.col(static_cast<Eigen::Index>(i));
+            if (!problem_.loads.empty()) residual += loads.col(static_cast<Eigen::Index>(first + i));
+            squares[first + i] = samples_[first + i].weight * residual.squaredNorm();
+          }
+        });
+    return squares;
+  }
+
+  Eigen::VectorXd potential_at(const quadrature::Target<Dim>& target, RepresentationRoom<Dim>& room) const {
     const auto element = static_cast<std::size_t>(target.element);
     const geometry::ElementJet<Dim> jet =
         geometry::evaluate_jet(space_.table, space_.table.elements[element], target.place);
     Densities here;
     room.densities.at_place(target.element, target.place, jet.position, jet.normal(), here);
-    const Eigen::VectorXd value = here.potential.row(0).transpose();
+    return here.potential.row(0).transpose();
+  }
+
+  /// int U t dS - int T (u - u(x)) dS, and for exterior problems + u(x) less what the field tends to: with the loads,
+  /// the residual. A column for each of the samples.
+  Eigen::MatrixXd equations(std::size_t first, std::size_t count, RepresentationRoom<Dim>& room) const {
     const Eigen::MatrixXd flat = Eigen::MatrixXd::Zero(components_, Dim);
-    const SimpleSolution<Dim> simple = simple_solution<Dim>(problem_.equation, target.position, value, flat, 0.0);
-    Eigen::VectorXd residual = representation_.value_at(target, simple, room);
-    if (problem_.exterior) {
-      residual += value;
+    std::vector<typename Representation<Dim>::Place> places;
+    for (std::size_t i = first; i < first + count; ++i) {
+      const quadrature::Target<Dim>& target = samples_[i].target;
+      places.push_back(
+          {target, simple_solution<Dim>(problem_.equation, target.position, potential_at(target, room), flat, 0.0)});
+    }
+    const auto sums = representation_.values(places, room);
+    Eigen::MatrixXd residuals(components_, static_cast<Eigen::Index>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      auto residual = residuals.col(static_cast<Eigen::Index>(i));
+      residual = sums[i].value;
+      if (!problem_.exterior) continue;
+      residual += places[i].simple.value;
       if (solution_.at_infinity.size() > 0) residual -= solution_.at_infinity;
     }
-    return residual;
+    return residuals;
   }
 
   const Problem<Dim>& problem_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -61,8 +62,11 @@ class Evaluator {
     for (const std::size_t i : inside) targets.push_back(target(i));
     loads_ = domain_jets<Dim>(problem_.loads, space_.table, rules_, targets, {options_.tolerance, options_.threads},
                               space_.coarse.get());
-    quadrature::parallel_for(inside.size(), options_.threads, [&](std::size_t k, int thread) {
-      evaluate_inside(inside[k], static_cast<Eigen::Index>(k), *threads_[static_cast<std::size_t>(thread)]);
+    constexpr std::size_t batch = Representation<Dim>::batch;
+    quadrature::parallel_for((inside.size() + batch - 1) / batch, options_.threads, [&](std::size_t task, int thread) {
+      const std::size_t first = task * batch;
+      evaluate_inside(std::span(inside).subspan(first, std::min(batch, inside.size() - first)),
+                      static_cast<Eigen::Index>(first), *threads_[static_cast<std::size_t>(thread)]);
     });
     for_points([&](std::size_t i, Thread& thread) {
       const BoundaryPlace<Dim>& place = places_[i];
@@ -115,25 +119,33 @@ class Evaluator {
     return simple_solution<Dim>(problem_.equation, nearest.position, value, gradient, uniform_stress);
   }
 
-  void evaluate_inside(std::size_t i, Eigen::Index column, Thread& thread) {
-    const quadrature::Target<Dim> x = target(i);
-    const double uniform_stress = loads_.uniform_stress[column];
-    const SimpleSolution<Dim> simple = subtracted(places_[i], uniform_stress, thread);
-    const typename Representation<Dim>::Sums sums = representation_.at(x, simple, thread.room);
-    FieldValue<Dim>& field = results_[i].field;
+  /// Points of which the loads' columns begin with `column`.
+  void evaluate_inside(std::span<const std::size_t> points, Eigen::Index column, Thread& thread) {
+    std::vector<typename Representation<Dim>::Place> places;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double uniform_stress = loads_.uniform_stress[column + static_cast<Eigen::Index>(k)];
+      places.push_back({target(points[k]), subtracted(places_[points[k]], uniform_stress, thread)});
+    }
+    const auto sums = representation_.at(places, thread.room);
+    for (std::size_t k = 0; k < points.size(); ++k)
+      set_field(places[k], sums[k], column + static_cast<Eigen::Index>(k), results_[points[k]].field);
+  }
+
+  void set_field(const typename Representation<Dim>::Place& place, const typename Representation<Dim>::Sums& sums,
+                 Eigen::Index column, FieldValue<Dim>& field) const {
     if (problem_.exterior) {
       field.value = -sums.value;
       field.gradient = -sums.gradient;
       if (solution_.at_infinity.size() > 0) field.value += solution_.at_infinity;
     } else {
-      field.value = simple.at(x.position) + sums.value;
-      field.gradient = simple.gradient + sums.gradient;
+      field.value = place.simple.at(place.target.position) + sums.value;
+      field.gradient = place.simple.gradient + sums.gradient;
     }
     if (!problem_.loads.empty()) {
       field.value += loads_.value.col(column);
       field.gradient += Eigen::Map<const Eigen::MatrixXd>(loads_.gradient.col(column).data(), field.value.size(), Dim);
     }
-    set_stress(problem_, uniform_stress, field);
+    set_stress(problem_, loads_.uniform_stress[column], field);
   }
 
   const Problem<Dim>& problem_;

@@ -1,8 +1,12 @@
 #include "solver/bem/field_densities.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+
+#include "solver/bem/basis_moments.h"
+#include "solver/linear/small_products.h"
 
 namespace isorim::solver {
 
@@ -32,16 +36,64 @@ FieldDensities<Dim>::FieldDensities(const Problem<Dim>& problem, const FieldSpac
       data_(problem) {}
 
 template <int Dim>
-void FieldDensities<Dim>::at_nodes(int element, const quadrature::NodeView<Dim>& nodes, Densities& densities) {
-  const int count = space_->elements[static_cast<std::size_t>(element)].count;
-  basis_.resize(count, static_cast<Eigen::Index>(nodes.size()));
-  geometry::Point<Dim - 1> place;
-  for (std::size_t q = 0; q < nodes.size(); ++q) {
-    for (std::size_t d = 0; d < Dim - 1; ++d) place[static_cast<Eigen::Index>(d)] = nodes.place[d][q];
-    const auto column = static_cast<Eigen::Index>(q);
-    basis_values(*space_, element, place, {basis_.col(column).data(), static_cast<std::size_t>(count)});
+void FieldDensities<Dim>::set_element(int element) {
+  if (element == element_) return;
+  const FieldElement<Dim>& field = space_->elements[static_cast<std::size_t>(element)];
+  const Eigen::Map<const Eigen::MatrixXd> rows(space_->rows.data() + field.row, field.bernstein_count(), field.count);
+  bernstein_.resize(2 * components_, field.bernstein_count());
+  gather(*space_, element, solution_->potential, coefficients_);
+  bernstein_.topRows(components_).noalias() = (rows * coefficients_).transpose();
+  gather(*space_, element, solution_->flux, coefficients_);
+  bernstein_.bottomRows(components_).noalias() = (rows * coefficients_).transpose();
+  element_ = element;
+}
+
+template <int Dim>
+void FieldDensities<Dim>::fill_products(int element, const quadrature::NodeView<Dim>& nodes) {
+  const FieldElement<Dim>& field = space_->elements[static_cast<std::size_t>(element)];
+  const auto n = static_cast<std::size_t>(padded(static_cast<int>(nodes.size())));
+  const auto step = static_cast<std::ptrdiff_t>(n);
+  for (std::size_t d = 0; d < Dim - 1; ++d) {
+    polynomials_[d].resize(n * static_cast<std::size_t>(field.degree[d] + 1));
+    bernstein_values(field.degree[d], static_cast<int>(nodes.size()), nodes.place[d].data(), polynomials_[d].data(),
+                     step);
   }
-  interpolate(element, densities);
+  products_.assign(n * static_cast<std::size_t>(field.bernstein_count()), 0.0);
+  double* product = products_.data();
+  if constexpr (Dim == 2) {
+    for (int i = 0; i <= field.degree[0]; ++i, product += n)
+      std::copy_n(polynomials_[0].data() + i * step, nodes.size(), product);
+  } else {
+    for (int j = 0; j <= field.degree[1]; ++j) {
+      const double* v = polynomials_[1].data() + j * step;
+      for (int i = 0; i <= field.degree[0]; ++i, product += n) {
+        const double* u = polynomials_[0].data() + i * step;
+        for (std::size_t q = 0; q < nodes.size(); ++q) product[q] = u[q] * v[q];
+      }
+    }
+  }
+}
+
+template <int Dim>
+void FieldDensities<Dim>::at_nodes(int element, const quadrature::NodeView<Dim>& nodes, Densities& densities) {
+  set_element(element);
+  fill_products(element, nodes);
+  const int rows = 2 * components_;
+  const int count = static_cast<int>(bernstein_.cols());
+  const int n = padded(static_cast<int>(nodes.size()));
+  fields_.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(n), 0.0);
+  add_product(rows, n, count, {bernstein_.data(), count, 1}, products_.data(), n, fields_.data(), n);
+  const auto size = static_cast<Eigen::Index>(nodes.size());
+  const Eigen::Map<const Eigen::MatrixXd> fields(fields_.data(), n, rows);
+  densities.potential = fields.topLeftCorner(size, components_);
+  densities.flux = fields.topRightCorner(size, components_);
+  const geometry::BezierElement<Dim>& bezier = space_->table.elements[static_cast<std::size_t>(element)];
+  if (space_->elements[static_cast<std::size_t>(element)].rational && !bezier.polynomial) {
+    fill_reciprocal_weights(space_->table, bezier, nodes, reciprocal_weight_, room_);
+    const Eigen::Map<const Eigen::ArrayXd> reciprocal(reciprocal_weight_.data(), size);
+    densities.potential.array().colwise() *= reciprocal;
+    densities.flux.array().colwise() *= reciprocal;
+  }
   data_.evaluate(problem_->condition_of[static_cast<std::size_t>(element)], nodes, values_);
   prescribe(element, densities);
 }
@@ -84,6 +136,10 @@ void FieldDensities<Dim>::prescribe(int element, Densities& densities) const {
     const ConditionKind kind = condition.components[component].kind;
     const Eigen::VectorXd axis = component_axis(condition, c).head(components_);
     Eigen::MatrixXd& field = kind == ConditionKind::value ? densities.potential : densities.flux;
+    if (kind != ConditionKind::robin && !condition.frame) {
+      for (Eigen::Index q = 0; q < field.rows(); ++q) field(q, c) = value_or_zero(values_.value[component], q);
+      continue;
+    }
     for (Eigen::Index q = 0; q < field.rows(); ++q) {
       double wanted = value_or_zero(values_.value[component], q);
       if (kind == ConditionKind::robin) {

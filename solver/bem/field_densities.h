@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <Eigen/Core>
@@ -36,6 +37,9 @@ class FieldDensities {
   Eigen::MatrixXd potential_derivatives(int element, const geometry::Point<Dim - 1>& place);
 
  private:
+  /// Makes `bernstein_` that of the element.
+  void set_element(int element);
+  void fill_products(int element, const quadrature::NodeView<Dim>& nodes);
   void interpolate(int element, Densities& densities);
   void prescribe(int element, Densities& densities) const;
 
@@ -45,9 +49,21 @@ class FieldDensities {
   int components_;
   BoundaryData<Dim> data_;
   ConditionValues<Dim> values_;
-  /// Functions of the element x nodes.
+  /// Functions of the element x 1.
   Eigen::MatrixXd basis_;
   Eigen::MatrixXd coefficients_;
+  /// Of which element `bernstein_` is; -1: of none.
+  int element_ = -1;
+  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  /// Components of the potential, then of the flux, by the products of Bernstein polynomials, the first parameter
+  /// fastest.
+  RowMatrix bernstein_;
+  /// Those products at nodes, and the fields: rows padded to product_lanes.
+  std::vector<double> products_;
+  std::vector<double> fields_;
+  std::array<std::vector<double>, Dim - 1> polynomials_;
+  std::vector<double> reciprocal_weight_;
+  std::vector<double> room_;
 };
 
 }  // namespace isorim::solver

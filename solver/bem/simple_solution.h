@@ -25,6 +25,8 @@ struct SimpleSolution {
   Eigen::MatrixXd gradient;
   Eigen::MatrixXd stress;
 
+  /// Constant and without flux.
+  bool is_uniform() const { return gradient.isZero(0.0) && stress.isZero(0.0); }
   Eigen::VectorXd at(const geometry::Point<Dim>& y) const { return value + gradient * (y - centre); }
 };
 

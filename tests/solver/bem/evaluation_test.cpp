@@ -181,6 +181,25 @@ TEST(Evaluation, SameBitsForAnyNumberOfThreads) {
   }
 }
 
+/// Points are evaluated in batches: those on the boundary, near it and far from it, alone and with others.
+TEST(Evaluation, SameBitsInAnyCompany) {
+  const Elasticity<3> kernel{0.8, 0.25};
+  const FieldSpace<3> space = space_on<3>(geometry::cube(1.0), 2, 1);
+  const ExactField<3> field = testing::harmonic_displacement<3>(kernel);
+  const auto problem = exact_problem(kernel, space, field, mixed);
+  const auto solution = exact_solution(kernel, space, field);
+  geometry::Points<3> points = geometry::Points<3>::Constant(3, 150, 0.5) + 0.45 * geometry::Points<3>::Random(3, 150);
+  points.row(0).leftCols(20).setConstant(1e-4);
+  points.row(2).middleCols(20, 5).setZero();
+  const auto all = evaluate_at<3>(problem, space, solution, points);
+  for (const Eigen::Index i : {0, 7, 19, 22, 60, 63, 64, 149}) {
+    const auto alone = evaluate_at<3>(problem, space, solution, points.col(i));
+    EXPECT_EQ(alone[0].location, all[static_cast<std::size_t>(i)].location) << i;
+    EXPECT_EQ(alone[0].field.value, all[static_cast<std::size_t>(i)].field.value) << i;
+    EXPECT_EQ(alone[0].field.gradient, all[static_cast<std::size_t>(i)].field.gradient) << i;
+  }
+}
+
 TEST(BoundaryGradient, RecoversAnyGradientFromFluxAndTangentialDerivatives) {
   const Elasticity<3> kernel{1.4, 0.2};
   Eigen::Matrix<double, 3, 2> tangents;
