@@ -1,11 +1,16 @@
-// What do boundary elements cost against unknowns, dense and compressed side by side?
+// What do boundary elements cost against unknowns, dense and compressed side by side? And against degree and
+// refinement, in the form in which others have published theirs?
 //
-//   build/bin/bem_scaling DIR [NAME...]
+//   build/bin/bem_scaling DIR [SERIES[/DEGREE[/REFINE]]...]
 //
-// Interior problems with a source outside and degree 2, tolerance 1e-6; every solve in a process of its own, so that
-// peak memory is that of the one solve. Writes DIR/bem_scaling.csv (one row a solve: CPU seconds and peak memory of
-// the whole process, relative error at points inside) and pictures of time and memory against unknowns for the sphere.
-// NAMEs choose among the series below; without any all are run, which takes an hour of CPU time.
+// Degree 2 and tolerance 1e-6 in the series sphere, sphere_large, torus, cube and elasticity, with a source outside;
+// degrees 1 to 8 in `degrees`; Bembel's problems over degree and refinement, with its own patches and tolerance 1e-12,
+// in peer_sphere, peer_torus and peer_neumann; a sphere in several units of length in `units`. Every solve has a
+// process of its own, so that peak memory is that of the one solve. Writes DIR/bem_scaling.csv (one row a solve: CPU
+// seconds and peak memory of the whole process with its evaluation inside, the largest error there relative to the
+// largest value) and pictures of time and memory against unknowns if the sphere's series is among what is run. Without
+// any SERIES all are, which takes half an hour of CPU time. OMP_NUM_THREADS=1 keeps CPU seconds free of threads that
+// wait.
 
 #include <algorithm>
 #include <array>
@@ -16,7 +21,6 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +37,7 @@
 #include "solver/bem/field_space.h"
 #include "solver/bem/problem.h"
 #include "solver/bem/solve.h"
+#include "tests/benchmarks/bem_fields.h"
 
 namespace isorim {
 namespace {
@@ -47,6 +52,9 @@ struct Run {
   int refine = 0;
   int degree = 2;
   solver::SolveMethod method = solver::SolveMethod::compressed;
+  double tolerance = 1e-6;
+  /// The unit of length by that of the series.
+  double scale = 1.0;
 };
 
 struct Measured {
@@ -58,10 +66,12 @@ struct Measured {
   double error = 0.0;
 };
 
-geometry::Boundary<3> shape_of(const std::string& series) {
-  if (series == "torus") return geometry::torus(2.0, 0.8);
-  if (series == "cube") return geometry::cube(1.0);
-  return geometry::sphere(1.0);
+geometry::Boundary<3> shape_of(const Run& run) {
+  if (run.series == "torus") return geometry::torus(2.0, 0.8);
+  if (run.series == "cube") return geometry::cube(1.0);
+  if (run.series == "peer_torus") return geometry::sixteen_patch_torus(2.0, 0.5);
+  if (run.series.starts_with("peer_")) return geometry::six_patch_sphere(1.0);
+  return geometry::sphere(run.scale);
 }
 
 geometry::Boundary<3> cut(geometry::Boundary<3> boundary, int cuts) {
@@ -80,50 +90,56 @@ geometry::Boundary<3> cut(geometry::Boundary<3> boundary, int cuts) {
   return boundary;
 }
 
-/// A source outside the shape, and points inside.
+/// Kelvin's solution as displacement, or 1 / r; every component.
+double source_value(bool elastic, const Point3& source, const Point3& x, Eigen::Index component) {
+  const Vector3 d = x - source;
+  const double r = d.norm();
+  return elastic ? (component == 0 ? (3.0 - 4.0 * 0.3) / r : 0.0) + d[0] * d[component] / (r * r * r) : 1.0 / r;
+}
+
+/// The exact field, a function of place and component, and points inside.
 struct Field {
-  Point3 source;
+  Eigen::Index components = 1;
+  std::function<double(const Point3&, Eigen::Index)> value;
   geometry::Points<3> points;
 };
 
-Field field_of(const std::string& series) {
-  Field field{Point3(1.0, 0.8, 0.9), geometry::Points<3>(3, 20)};
+/// A source outside the shape.
+Field source_field(const std::string& series) {
+  Field field;
+  field.points.resize(3, 20);
   for (int i = 0; i < 20; ++i) {
     const double t = i / 20.0;
     field.points.col(i) = 0.8 * t * Vector3(0.6, -0.64, 0.48);
     if (series == "cube") field.points.col(i) = Point3(0.2 + 0.6 * t, 0.5, 0.7 - 0.3 * t);
     if (series == "torus") field.points.col(i) = 2.0 * Vector3(std::cos(6.0 * t), std::sin(6.0 * t), 0.0);
   }
-  if (series == "cube") field.source = Point3(1.4, 1.3, 1.5);
-  if (series == "torus") field.source = Point3(2.0, 0.0, 1.6);
+  Point3 source(1.0, 0.8, 0.9);
+  if (series == "cube") source = Point3(1.4, 1.3, 1.5);
+  if (series == "torus") source = Point3(2.0, 0.0, 1.6);
+  const bool elastic = series == "elasticity";
+  field.components = elastic ? 3 : 1;
+  field.value = [=](const Point3& x, Eigen::Index c) { return source_value(elastic, source, x, c); };
   return field;
 }
 
-quadrature::IntegrandFactory<3> data(std::function<double(const Point3&)> function) {
-  return [function = std::move(function)]() -> quadrature::Integrand<3> {
-    return [function](const Eigen::Ref<const geometry::Points<3>>& points, const Eigen::Ref<const geometry::Points<3>>&,
-                      std::span<double> values) {
-      for (Eigen::Index q = 0; q < points.cols(); ++q) values[static_cast<std::size_t>(q)] = function(points.col(q));
-    };
-  };
-}
-
-/// Kelvin's solution as displacement, or 1 / r; every component.
-double exact_value(bool elastic, const Point3& source, const Point3& x, Eigen::Index component) {
-  const Vector3 d = x - source;
-  const double r = d.norm();
-  return elastic ? (component == 0 ? (3.0 - 4.0 * 0.3) / r : 0.0) + d[0] * d[component] / (r * r * r) : 1.0 / r;
+Field field_of(const Run& run) {
+  if (run.series == "peer_torus")
+    return {1, [](const Point3& x, Eigen::Index) { return source_beside_torus(x); }, torus_centres()};
+  if (run.series.starts_with("peer_") || run.series == "units")
+    return {1, [](const Point3& x, Eigen::Index) { return saddle(x); }, run.scale * sphere_grid()};
+  return source_field(run.series);
 }
 
 double inside_error(const solver::Problem<3>& problem, const solver::FieldSpace<3>& space,
-                    const solver::Solution<3>& solution, const Field& field, bool elastic) {
+                    const solver::Solution<3>& solution, const Field& field) {
   const auto found = solver::evaluate_at<3>(problem, space, solution, field.points);
   double error = 0.0;
   double largest = 0.0;
   for (Eigen::Index i = 0; i < field.points.cols(); ++i) {
     const auto& value = found[static_cast<std::size_t>(i)].field.value;
-    for (Eigen::Index c = 0; c < (elastic ? 3 : 1); ++c) {
-      const double exact = exact_value(elastic, field.source, field.points.col(i), c);
+    for (Eigen::Index c = 0; c < field.components; ++c) {
+      const double exact = field.value(field.points.col(i), c);
       error = std::max(error, std::abs(value[c] - exact));
       largest = std::max(largest, std::abs(exact));
     }
@@ -131,32 +147,42 @@ double inside_error(const solver::Problem<3>& problem, const solver::FieldSpace<
   return error / largest;
 }
 
-/// In the process of its own.
-Measured solve_here(const Run& run) {
-  const bool elastic = run.series == "elasticity";
-  const Field field = field_of(run.series);
-  solver::DiscretisationOptions<3> options;
-  options.degree = run.degree;
-  options.refine = run.refine;
-  const auto space = solver::field_space(geometry::orient(cut(shape_of(run.series), run.cuts)), options);
+/// Values prescribed, or fluxes.
+solver::Problem<3> problem_of(const Run& run, const Field& field, std::size_t elements) {
   solver::Problem<3> problem;
-  if (elastic)
+  if (run.series == "elasticity")
     problem.equation = solver::Elasticity<3>{1.0, 0.3};
   else
     problem.equation = solver::Laplace<3>{};
   solver::Condition<3> condition{"all", {}, {}};
-  for (Eigen::Index c = 0; c < (elastic ? 3 : 1); ++c) {
-    const auto value = [=, source = field.source](const Point3& x) { return exact_value(elastic, source, x, c); };
-    condition.components.push_back({solver::ConditionKind::value, data(value), {}});
+  for (Eigen::Index c = 0; c < field.components; ++c) {
+    const auto value = [value = field.value, c](const Point3& x, const Vector3&) { return value(x, c); };
+    condition.components.push_back({solver::ConditionKind::value, prescribed<3>(value), {}});
+  }
+  if (run.series == "peer_neumann") {
+    const auto flux = [](const Point3& x, const Vector3& n) { return saddle_gradient(x).dot(n); };
+    condition.components = {{solver::ConditionKind::flux, prescribed<3>(flux), {}}};
   }
   problem.conditions.push_back(condition);
-  problem.condition_of.assign(space.elements.size(), 0);
+  problem.condition_of.assign(elements, 0);
+  return problem;
+}
+
+/// In the process of its own.
+Measured solve_here(const Run& run) {
+  const Field field = field_of(run);
+  solver::DiscretisationOptions<3> options;
+  options.degree = run.degree;
+  options.refine = run.refine;
+  const auto space = solver::field_space(geometry::orient(cut(shape_of(run), run.cuts)), options);
+  const auto problem = problem_of(run, field, space.elements.size());
   solver::SolveOptions solve_options;
   solve_options.method = run.method;
-  solve_options.tolerance = 1e-6;
+  solve_options.tolerance = run.tolerance;
   const auto solution = solver::solve(problem, space, solve_options);
 
   Measured measured;
+  measured.error = inside_error(problem, space, solution, field);
   measured.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -164,7 +190,6 @@ Measured solve_here(const Run& run) {
   measured.unknowns = static_cast<double>(solution.unknowns);
   measured.matrix_megabytes = static_cast<double>(solution.matrix_memory) / 1e6;
   measured.iterations = solution.iterations;
-  measured.error = inside_error(problem, space, solution, field, elastic);
   return measured;
 }
 
@@ -191,6 +216,27 @@ bool solve_apart(const Run& run, Measured& measured) {
   return complete && status == 0;
 }
 
+/// Bembel's problems, degree by refinement, with a tolerance below all errors of discretisation; the same sphere in
+/// metres, millimetres and kilometres.
+void append_peers(std::vector<Run>& runs) {
+  using solver::SolveMethod;
+  for (const std::string series : {"peer_sphere", "peer_torus", "peer_neumann"}) {
+    for (int degree = 1; degree <= 8; ++degree) {
+      for (int refine = 1; refine <= 4; ++refine) {
+        const int patches = series == "peer_torus" ? 16 : 6;
+        const int side = (1 << refine) + degree;
+        if (patches * side * side > 2600) continue;
+        for (const SolveMethod method : {SolveMethod::dense, SolveMethod::compressed})
+          runs.push_back({series, 1, refine, degree, method, 1e-12});
+      }
+    }
+  }
+  for (const double scale : {1.0, 1e3, 1e-3}) {
+    for (const SolveMethod method : {SolveMethod::dense, SolveMethod::compressed})
+      runs.push_back({"units", 1, 2, 6, method, 1e-9, scale});
+  }
+}
+
 /// The sphere up to 50,000 unknowns, dense ones as far as 15,000 (2 GB); others up to about 15,000.
 std::vector<Run> all_runs() {
   using solver::SolveMethod;
@@ -215,6 +261,7 @@ std::vector<Run> all_runs() {
       if ((degree + 1) << refine <= 48) runs.push_back({"degrees", 1, refine, degree});
     }
   }
+  append_peers(runs);
   return runs;
 }
 
@@ -252,14 +299,23 @@ void draw(const std::vector<std::pair<Run, Measured>>& results, const std::strin
   io::svg::write_svg(path, plot);
 }
 
+/// By its series, or one degree or refinement of it.
+bool is_chosen(const Run& run, const std::vector<std::string>& names) {
+  const std::string degree = fmt::format("{}/{}", run.series, run.degree);
+  const std::string refine = fmt::format("{}/{}", degree, run.refine);
+  return names.empty() || std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+           return name == run.series || name == degree || name == refine;
+         });
+}
+
 int run_all(const std::filesystem::path& folder, const std::vector<std::string>& names) {
   std::filesystem::create_directories(folder);
   std::ofstream table(folder / "bem_scaling.csv");
-  table << "series,degree,cuts,refine,method,unknowns,cpu_seconds,peak_MB,matrix_MB,iterations,error\n";
+  table << "series,degree,cuts,refine,scale,tolerance,method,unknowns,cpu_seconds,peak_MB,matrix_MB,iterations,error\n";
   std::vector<std::pair<Run, Measured>> results;
   bool all_well = true;
   for (const Run& run : all_runs()) {
-    if (!names.empty() && std::find(names.begin(), names.end(), run.series) == names.end()) continue;
+    if (!is_chosen(run, names)) continue;
     Measured measured;
     if (!solve_apart(run, measured)) {
       fmt::print(stderr, "{} refine {} degree {} failed\n", run.series, run.refine, run.degree);
@@ -267,16 +323,18 @@ int run_all(const std::filesystem::path& folder, const std::vector<std::string>&
       continue;
     }
     const std::string line =
-        fmt::format("{},{},{},{},{},{},{:.2f},{:.1f},{:.1f},{},{:.2e}\n", run.series, run.degree, run.cuts, run.refine,
-                    name_of(run.method), measured.unknowns, measured.cpu_seconds, measured.peak_megabytes,
-                    measured.matrix_megabytes, measured.iterations, measured.error);
+        fmt::format("{},{},{},{},{},{:.0e},{},{},{:.2f},{:.1f},{:.1f},{},{:.2e}\n", run.series, run.degree, run.cuts,
+                    run.refine, run.scale, run.tolerance, name_of(run.method), measured.unknowns, measured.cpu_seconds,
+                    measured.peak_megabytes, measured.matrix_megabytes, measured.iterations, measured.error);
     table << line << std::flush;
     fmt::print("{}", line);
     std::fflush(stdout);
     results.emplace_back(run, measured);
   }
-  draw(results, "CPU seconds", &Measured::cpu_seconds, folder / "bem_time.svg");
-  draw(results, "peak memory in MB", &Measured::peak_megabytes, folder / "bem_memory.svg");
+  if (is_chosen({"sphere"}, names)) {
+    draw(results, "CPU seconds", &Measured::cpu_seconds, folder / "bem_time.svg");
+    draw(results, "peak memory in MB", &Measured::peak_megabytes, folder / "bem_memory.svg");
+  }
   return all_well ? 0 : 1;
 }
 
@@ -285,7 +343,7 @@ int run_all(const std::filesystem::path& folder, const std::vector<std::string>&
 
 int main(int count, char** arguments) {
   if (count < 2) {
-    fmt::print(stderr, "bem_scaling DIR [NAME...]\n");
+    fmt::print(stderr, "bem_scaling DIR [SERIES[/DEGREE[/REFINE]]...]\n");
     return 2;
   }
   return isorim::run_all(arguments[1], {arguments + 2, arguments + count});
