@@ -80,6 +80,7 @@ struct FloatingBody::Elements {
 void FloatingBody::Elements::measure_scales() {
   scales.elements = table.elements.size();
   scales.radius = 0.5 * size();
+  scales.coordinate = std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
   WettedArray rough = WettedArray::Zero();
   for (const BezierElement<3>& element : table.elements)
     rough += rough_integrals(quadrature::whole_element(table, element), reference);
@@ -223,47 +224,77 @@ WettedPart FloatingBody::wetted(const WaterPlane& plane, WettedScope scope, Wate
 
 namespace {
 
-/// Pieces of the boundary in the order of the least that their control points allow.
+/// A piece of the boundary, and between which heights it lies.
 struct Candidate {
   ElementPiece<3> piece;
   geometry::Interval range;
-  /// The lowest control point is a corner of an element that is not cut: it lies on the boundary.
-  bool is_met = false;
+  /// Across which the heights of its control points vary most.
+  int direction = 0;
+  /// A height that it reaches: of a corner of an element that is not cut.
+  double reached = 0.0;
 
-  bool operator<(const Candidate& other) const { return range.first > other.range.first; }
+  /// The lowest come first; of level ones the smallest.
+  bool operator<(const Candidate& other) const {
+    return range.first != other.range.first ? range.first > other.range.first : piece.depth < other.piece.depth;
+  }
 };
 
-Candidate candidate(ElementPiece<3> piece, const Vector3& direction) {
-  const int p = piece.element->degree[0];
-  const int count = piece.element->control_point_count();
-  const geometry::Interval range = heights(piece.net(), count, direction);
-  Candidate result{std::move(piece), range, false};
-  if (result.piece.is_cut()) return result;
-  for (const int corner : {0, p, count - 1 - p, count - 1}) {
-    const double height = heights(result.piece.net() + 4 * corner, 1, direction).first;
-    result.is_met = result.is_met || height <= result.range.first;
+/// The largest difference of heights along a line of control points. `heights`: u fastest, `counts` of them.
+double largest_difference(const std::vector<double>& heights, const std::array<std::size_t, 2>& counts, int direction) {
+  const std::size_t step = direction == 0 ? 1 : counts[0];
+  const std::size_t line_step = direction == 0 ? counts[0] : 1;
+  const auto d = static_cast<std::size_t>(direction);
+  double largest = 0.0;
+  for (std::size_t line = 0; line < counts[1 - d]; ++line) {
+    geometry::Interval range{heights[line * line_step], heights[line * line_step]};
+    for (std::size_t i = 1; i < counts[d]; ++i) {
+      range.first = std::min(range.first, heights[line * line_step + i * step]);
+      range.last = std::max(range.last, heights[line * line_step + i * step]);
+    }
+    largest = std::max(largest, range.length());
   }
+  return largest;
+}
+
+Candidate candidate(ElementPiece<3> piece, const Vector3& direction) {
+  const std::array<std::size_t, 2> counts{static_cast<std::size_t>(piece.element->degree[0] + 1),
+                                          static_cast<std::size_t>(piece.element->degree[1] + 1)};
+  std::vector<double> all(counts[0] * counts[1]);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = heights(piece.net() + 4 * i, 1, direction).first;
+  const auto [least, most] = std::minmax_element(all.begin(), all.end());
+  Candidate result{std::move(piece), {*least, *most}, 0, *most};
+  if (largest_difference(all, counts, 1) > largest_difference(all, counts, 0)) result.direction = 1;
+  if (!result.piece.is_cut())
+    result.reached = std::min({all.front(), all[counts[0] - 1], all[all.size() - counts[0]], all.back()});
   return result;
 }
 
 }  // namespace
 
 double FloatingBody::lowest(const Vector3& direction) const {
-  constexpr int deepest = 80;
-  const double rounding = 2.0 * std::numeric_limits<double>::epsilon() * elements_->size();
+  // Enough for any point, and for lines of lowest points that follow a parameter; others follow diagonals.
+  constexpr int most_bisections = 20000;
+  const double farthest_out = elements_->size() + elements_->reference.norm();
+  const double rounding = 2.0 * std::numeric_limits<double>::epsilon() * farthest_out;
+  double reached = std::numeric_limits<double>::infinity();
   std::priority_queue<Candidate> queue;
-  for (const BezierElement<3>& element : elements_->table.elements) {
-    ElementPiece<3> piece = quadrature::whole_element(elements_->table, element);
-    if (!piece.empty()) queue.push(candidate(std::move(piece), direction));
-  }
-  while (true) {
+  const auto push = [&](ElementPiece<3> piece) {
+    if (piece.empty()) return;
+    Candidate next = candidate(std::move(piece), direction);
+    reached = std::min(reached, next.reached);
+    if (next.range.first <= reached) queue.push(std::move(next));
+  };
+  for (const BezierElement<3>& element : elements_->table.elements)
+    push(quadrature::whole_element(elements_->table, element));
+  for (int k = 0; k < most_bisections && !queue.empty(); ++k) {
     const Candidate best = queue.top();
+    if (reached - best.range.first <= rounding) break;
     queue.pop();
-    if (best.is_met || best.range.length() <= rounding || best.piece.depth >= deepest) return best.range.first;
-    auto halves = quadrature::bisect(best.piece, best.piece.depth % 2);
-    for (ElementPiece<3>* half : {&halves.first, &halves.second})
-      if (!half->empty()) queue.push(candidate(std::move(*half), direction));
+    auto halves = quadrature::bisect(best.piece, best.direction);
+    push(std::move(halves.first));
+    push(std::move(halves.second));
   }
+  return reached;
 }
 
 Point3 point_on(const FloatingBody& body, const WaterlinePiece& piece, double t) {

@@ -74,7 +74,8 @@ class FloatingBody {
   WettedPart wetted(const WaterPlane& plane, WettedScope scope = WettedScope::moments,
                     Waterline waterline = Waterline::skip) const;
 
-  /// min direction . x over the boundary, to rounding.
+  /// min direction . x over the boundary, to rounding. Where it is reached along a curve that follows no parameter
+  /// line, to about 1e-9 of the size.
   double lowest(const geometry::Vector3& direction) const;
 
  private:

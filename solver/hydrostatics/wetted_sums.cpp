@@ -121,6 +121,14 @@ int power_of_distance(int k) {
   return k < Layout::first ? 0 : k < Layout::second ? 1 : 2;
 }
 
+/// The diagonal of the box of the control points.
+double diagonal(const ElementPiece<3>& piece) {
+  const int count = piece.element->control_point_count();
+  const Eigen::Map<const Eigen::Matrix4Xd> net(piece.net(), 4, count);
+  const Eigen::Matrix3Xd points = net.colwise().hnormalized();
+  return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+}
+
 class WettedEvaluator {
  public:
   using Piece = ElementPiece<3>;
@@ -150,15 +158,19 @@ class WettedEvaluator {
   }
   std::pair<Piece, Piece> split(const Piece& piece, int direction) const { return bisect(piece, direction); }
 
-  /// What rounding is relative to: the area times powers of the distance.
+  /// What rounding is relative to: the area times powers of the distance; more for a body that lies far from the
+  /// origin of its coordinates.
   Values magnitude(const Piece& piece, const Values& value) const {
-    const double area = amplification(piece) * std::abs(value[Layout::area]);
-    Values result;
-    for (int k = 0; k < Layout::count; ++k) result[k] = area * std::pow(scales_.radius, power_of_distance(k));
-    return result;
+    const double distance = std::max(1.0, scales_.coordinate / scales_.radius);
+    return powers_of_distance(amplification(piece) * distance * std::abs(value[Layout::area]));
   }
+  /// Rounding of the control points turns the tangents of a small piece, so its area is known to a rounding of the
+  /// coordinates times its size.
   Values noise(const Piece& piece, const Values& value) const {
-    return (difference_noise * magnitude(piece, value)).max(std::numeric_limits<double>::min());
+    const int degree = std::max(piece.element->degree[0], piece.element->degree[1]);
+    const double tangents = amplification(piece) * degree * scales_.coordinate * diagonal(piece);
+    return (difference_noise * (magnitude(piece, value) + powers_of_distance(tangents)))
+        .max(std::numeric_limits<double>::min());
   }
   /// Half of the target is shared out by area, half equally among elements and their halves.
   Values allowance(const Piece& piece, const Values& value) const {
@@ -173,6 +185,11 @@ class WettedEvaluator {
   }
 
  private:
+  Values powers_of_distance(double area) const {
+    Values result;
+    for (int k = 0; k < Layout::count; ++k) result[k] = area * std::pow(scales_.radius, power_of_distance(k));
+    return result;
+  }
   /// A piece that has been evaluated: see RegionMoments.
   static double amplification(const Piece& piece) {
     return piece.is_cut() ? piece.region->moments({}).amplification() : 1.0;

@@ -50,6 +50,8 @@ struct WettedScales {
   double volume = 0.0;
   /// The largest distance of a control point from x0.
   double radius = 0.0;
+  /// The largest absolute coordinate of a control point: positions are known to a rounding of it.
+  double coordinate = 0.0;
   std::size_t elements = 1;
 };
 

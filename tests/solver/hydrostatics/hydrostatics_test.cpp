@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -45,6 +46,13 @@ Boundary<3> together(const std::vector<Boundary<3>>& parts) {
       all.patches.push_back(patch);
     }
   return all;
+}
+
+/// A solid cylinder of radius 1 along x, its patches' edges turned about the axis.
+Boundary<3> lying_cylinder(double turn) {
+  const Eigen::Matrix3d to_x = Eigen::AngleAxisd(0.5 * pi, Vector3::UnitY()).toRotationMatrix();
+  const Eigen::Matrix3d about_x = Eigen::AngleAxisd(turn, Vector3::UnitX()).toRotationMatrix();
+  return geometry::transform<3>(geometry::cylinder(1.0, 6.0), {about_x * to_x, Vector3::Zero()});
 }
 
 // --- The Wigley hull ------------------------------------------------------------------------------------------
@@ -296,6 +304,35 @@ TEST(CylinderHydrostatics, HaveTheCircularSegmentAtAnyHeel) {
     }
 }
 
+/// The elliptic cylinder y = cos t, z = a sin t, |x| <= 3 up to z = 0.1 a: the wetted surface, for a = 0.01 and 1e-3,
+/// by quadrature with 30 digits.
+TEST(CylinderHydrostatics, WettedSurfacesOfThinOnesReachTheTolerance) {
+  for (const auto& [thickness, area] : {std::pair{1e-2, 12.1009517336845391}, {1e-3, 12.0637732189889501}}) {
+    const geometry::AffineMap<3> flat = geometry::scaling<3>({1.0, 1.0, thickness});
+    for (const double turn : {0.0, 0.6, pi / 4.0}) {
+      const Boundary<3> body = geometry::transform<3>(lying_cylinder(turn), flat);
+      const Hydrostatics result = at(body, {1.1 * thickness, 0.0, 0.0});
+      EXPECT_EQ(result.unfinished, 0) << thickness << ' ' << turn;
+      EXPECT_NEAR(result.wetted_surface.value, area, 1e-11);
+      EXPECT_LE(std::abs(result.wetted_surface.value - area), result.wetted_surface.error + 1e-14);
+    }
+  }
+}
+
+/// Coordinates of a yard or a map: what rounding leaves of a body far from the origin.
+TEST(CylinderHydrostatics, FarFromTheOriginAreRoundingAway) {
+  for (const double far : {1e3, 1e6}) {
+    const geometry::AffineMap<3> shift = geometry::translation<3>({far, -far, far});
+    const Hydrostatics result = at(geometry::transform<3>(lying_cylinder(0.6), shift), {1.0, 0.0, 0.0});
+    EXPECT_EQ(result.unfinished, 0);
+    EXPECT_NEAR(result.immersed.volume.value, 3.0 * pi, result.immersed.volume.error);
+    EXPECT_LE(result.immersed.volume.error, 1e-13 * far);
+    EXPECT_NEAR(result.wetted_surface.value, 7.0 * pi, result.wetted_surface.error);
+    EXPECT_LE(result.wetted_surface.error, 1e-13 * far);
+    EXPECT_NEAR(result.vcb.value, 1.0 - 4.0 / (3.0 * pi), 1e-14 * far);
+  }
+}
+
 TEST(HollowHydrostatics, TorusHasAnAnnularWaterplane) {
   const double big = 2.0;
   const double small = 0.5;
@@ -407,6 +444,32 @@ TEST(LowestPoint, IsFoundToRounding) {
   EXPECT_NEAR(cut.lowest(Vector3::UnitZ()), -0.5, 1e-14);
   const Vector3 slanting = Vector3(1.0, 0.0, 2.0).normalized();
   EXPECT_NEAR(cut.lowest(slanting), slanting.dot(Point3(-std::sqrt(0.75), 0.0, -0.5)), 1e-13);
+}
+
+/// z = (x - y)^2 over the unit square, and a lid: enough of a body for its lowest points.
+Boundary<3> diagonal_trough() {
+  geometry::HomogeneousPoints<3> bottom(4, 9);
+  geometry::HomogeneousPoints<3> lid(4, 9);
+  // Polar forms of (x - y)^2.
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) {
+      const double z = (i == 2 ? 1.0 : 0.0) - 0.5 * i * j + (j == 2 ? 1.0 : 0.0);
+      bottom.col(i + 3 * j) << 0.5 * i, 0.5 * j, z, 1.0;
+      lid.col(i + 3 * j) << 0.5 * i, 0.5 * j, 2.0, 1.0;
+    }
+  const geometry::KnotVector knots = geometry::KnotVector::bezier(2);
+  return {{{"bottom", geometry::NurbsSurface<3>(knots, knots, bottom), -1},
+           {"lid", geometry::NurbsSurface<3>(knots, knots, lid), 1}}};
+}
+
+TEST(LowestPoint, IsFoundWhereItIsAWholeLine) {
+  for (const double turn : {0.0, 0.3, pi / 4.0, 1.2})
+    EXPECT_NEAR(FloatingBody(lying_cylinder(turn)).lowest(Vector3::UnitZ()), -1.0, 1e-14) << turn;
+  // Its ends cut obliquely, so that elements are cut.
+  const Boundary<3> cut = geometry::clip(lying_cylinder(0.3), geometry::PlaneTool{{2.0, 0, 0}, {1, 0.2, 0.3}});
+  EXPECT_NEAR(FloatingBody(cut).lowest(Vector3::UnitZ()), -1.0, 1e-14);
+  // Its lowest points follow no parameter line.
+  EXPECT_NEAR(FloatingBody(diagonal_trough()).lowest(Vector3::UnitZ()), 0.0, 1e-9);
 }
 
 TEST(FloatingBodies, HaveTheSameBitsForAnyNumberOfThreads) {
