@@ -14,6 +14,7 @@
 #include "geometry/errors.h"
 #include "geometry/intersection/clipped_face.h"
 #include "geometry/intersection/plane_section.h"
+#include "geometry/intersection/rounding_length.h"
 #include "geometry/intersection/tool_caps.h"
 #include "geometry/trimming/face_locator.h"
 
@@ -78,9 +79,13 @@ struct OpenPart {
 class Clipper {
  public:
   Clipper(const Boundary<3>& solid, const ClipOptions& options)
-      : solid_(solid), options_(options), box_(box_of(solid)) {}
+      : solid_(solid), options_(options), box_(box_of(solid)), size_(rounding_length(box_.lower, box_.upper)) {
+    options_.gap_tolerance *= box_.diagonal() / size_;
+  }
 
-  double size() const { return box_.diagonal(); }
+  /// That tolerances are relative to, and the options with the one of gaps brought to it.
+  double size() const { return size_; }
+  const ClipOptions& options() const { return options_; }
   Point3 middle() const { return box_.middle(); }
 
   OpenPart cut(const ImplicitSurface& implicit) const {
@@ -126,6 +131,7 @@ class Clipper {
   const Boundary<3>& solid_;
   ClipOptions options_;
   BoundingBox<3> box_;
+  double size_;
 };
 
 /// The first of "cap", "cap_2", ... that is not taken.
@@ -154,16 +160,17 @@ struct CapMaker {
 
   std::vector<Patch<3>> operator()(const PlaneTool& tool) const {
     const PlaneFrame frame = cap_frame(tool, clipper.middle());
-    return plane_caps(frame, plane_loops(frame, edges, clipper.size(), options));
+    return plane_caps(frame, plane_loops(frame, edges, clipper.size(), clipper.options()));
   }
   std::vector<Patch<3>> operator()(const SphereTool& tool) const {
-    return sphere_caps(tool, edges, clipper.size(), options, [this](const Point3& point) { return contains(point); });
+    return sphere_caps(tool, edges, clipper.size(), clipper.options(),
+                       [this](const Point3& point) { return contains(point); });
   }
   std::vector<Patch<3>> operator()(const CylinderTool& tool) const {
-    return cylinder_caps(tool, edges, clipper.size(), options);
+    return cylinder_caps(tool, edges, clipper.size(), clipper.options());
   }
   std::vector<Patch<3>> operator()(const ConeTool& tool) const {
-    return cone_caps(tool, edges, clipper.size(), options);
+    return cone_caps(tool, edges, clipper.size(), clipper.options());
   }
 
  private:

@@ -51,9 +51,10 @@ using ClipTool = std::variant<PlaneTool, SphereTool, CylinderTool, ConeTool>;
 ImplicitSurface implicit_surface(const ClipTool& tool);
 
 struct ClipOptions {
-  /// Distances from the tool that count as zero, relative to the diagonal of the solid's box: a hundred times rounding.
+  /// Distances from the tool that count as zero, relative to the diagonal of the solid's box or, if that is larger, the
+  /// largest coordinate: a hundred times rounding.
   double tolerance = 1e-13;
-  /// How far edges of neighbouring faces may lie apart where they cross the tool, relative to the same diagonal.
+  /// How far edges of neighbouring faces may lie apart where they cross the tool, relative to the diagonal.
   double gap_tolerance = 1e-6;
 };
 

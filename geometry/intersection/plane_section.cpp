@@ -15,6 +15,7 @@
 #include "geometry/errors.h"
 #include "geometry/intersection/directed_loops.h"
 #include "geometry/intersection/plane_image.h"
+#include "geometry/intersection/rounding_length.h"
 #include "geometry/intersection/section_chains.h"
 #include "geometry/intersection/section_faces.h"
 #include "geometry/shapes/checks.h"
@@ -28,8 +29,8 @@ namespace {
 constexpr double finest_gap = 1e-12;
 /// How much wider than between patches gaps may be between the curves in which a plane cuts them.
 constexpr double gap_growth = 100.0;
-/// Relative to the size: points this near to a curve lie on it (double roots are known to the root of rounding), and
-/// this near to each other are the same.
+/// Points this near to a curve lie on it (double roots are known to the root of rounding), and this near to each other
+/// are the same: relative to the root of the size times the diagonal.
 constexpr double contact_distance = 2e-6;
 /// Relative to the size: loops that are narrower, in the mean, are edges that run back on themselves.
 constexpr double least_width = 1e-13;
@@ -182,7 +183,9 @@ double perimeter_of_polygon(const SectionCurve& curve) {
 /// One section in the making.
 class SectionMaker {
  public:
-  SectionMaker(const PlaneFrame& frame, double size, const SectionOptions& options) : size_(size), options_(options) {
+  /// Gaps are relative to the size, as other tolerances.
+  SectionMaker(const PlaneFrame& frame, double size, double diagonal, const SectionOptions& options)
+      : size_(size), contact_distance_(contact_distance * std::sqrt(size * diagonal)), options_(options) {
     section_.frame = frame;
   }
 
@@ -206,7 +209,7 @@ class SectionMaker {
   CurveMaker maker() const { return {section_.frame, size_, options_.gap_tolerance}; }
 
   bool lies_on(const Point3& x, const SectionPiece& piece) const {
-    return nearest_on(piece, x).distance <= contact_distance * size_;
+    return nearest_on(piece, x).distance <= contact_distance_;
   }
 
   bool runs_along(const SectionPiece& a, const SectionPiece& b) const {
@@ -304,10 +307,10 @@ class SectionMaker {
   }
 
   void add_point(const SectionPoint& point, std::vector<SectionPoint>& points) const {
-    const double distance = contact_distance * size_;
-    if (std::ranges::none_of(points,
-                             [&](const SectionPoint& known) { return (known.point - point.point).norm() <= distance; }))
-      points.push_back(point);
+    const auto is_same = [&](const SectionPoint& known) {
+      return (known.point - point.point).norm() <= contact_distance_;
+    };
+    if (std::ranges::none_of(points, is_same)) points.push_back(point);
   }
 
   void add_points(const FacesOnPlane& found) {
@@ -341,6 +344,7 @@ class SectionMaker {
   }
 
   double size_;
+  double contact_distance_;
   SectionOptions options_;
   PlaneSection section_;
 };
@@ -390,10 +394,12 @@ class PlaneCutter::Faces {
       upper = upper.cwiseMax(face.upper);
     }
     for (const Patch<3>& patch : boundary.patches) names_.push_back(patch.name);
-    size_ = (upper - lower).norm();
+    diagonal_ = (upper - lower).norm();
+    size_ = rounding_length(lower, upper);
+    options_.gap_tolerance *= diagonal_ / size_;
   }
 
-  double size() const { return size_; }
+  double diagonal() const { return diagonal_; }
 
   PlaneSection section(const PlaneFrame& plane) const {
     for (std::size_t k = 0; k + 1 < shifts.size(); ++k) {
@@ -414,8 +420,8 @@ class PlaneCutter::Faces {
     const double shift = relative_shift * size_;
     frame.origin += shift * plane.normal;
     const ImplicitSurface implicit = implicit_plane(frame.origin, frame.normal);
-    PlaneSection result =
-        SectionMaker(frame, size_, options_).make(cut_faces(faces_, implicit, frame.normal, size_, options_.tolerance));
+    PlaneSection result = SectionMaker(frame, size_, diagonal_, options_)
+                              .make(cut_faces(faces_, implicit, frame.normal, size_, options_.tolerance));
     result.shift = shift;
     if (shift != 0.0)
       result.messages.push_back(
@@ -430,6 +436,8 @@ class PlaneCutter::Faces {
   SectionOptions options_;
   std::vector<SectionFace> faces_;
   std::vector<std::string> names_;
+  double diagonal_ = 0.0;
+  /// What tolerances are relative to: rounding_length().
   double size_ = 0.0;
 };
 
@@ -440,7 +448,7 @@ PlaneCutter::PlaneCutter(PlaneCutter&&) noexcept = default;
 PlaneCutter& PlaneCutter::operator=(PlaneCutter&&) noexcept = default;
 
 double PlaneCutter::size() const {
-  return faces_->size();
+  return faces_->diagonal();
 }
 
 PlaneSection PlaneCutter::section(const PlaneFrame& plane) const {

@@ -68,7 +68,7 @@ struct SectionCurve {
   Point3 largest_gap_place = Point3::Zero();
   /// The pieces in the coordinates of the plane, in the same order (of one piece one curve or several); ends that
   /// differ by more than rounding are joined by straight lines. Isoparametric pieces are exact, others are met to
-  /// 4e-15 of the size of the boundary.
+  /// 4e-15 of the size of the boundary, or of its largest coordinate.
   TrimLoop plane_curves;
 };
 
@@ -122,10 +122,10 @@ struct PlaneSection {
 };
 
 struct SectionOptions {
-  /// Distances from the plane that count as zero, relative to the diagonal of the boundary's box: a hundred times
-  /// rounding.
+  /// Distances from the plane that count as zero, relative to the diagonal of the boundary's box or, if that is larger,
+  /// the largest coordinate: a hundred times rounding.
   double tolerance = 1e-13;
-  /// How wide gaps between patches may be, relative to the same diagonal. Where a plane meets the edge of two patches
+  /// How wide gaps between patches may be, relative to the diagonal. Where a plane meets the edge of two patches
   /// at a small angle the gap between its curves is wider: ends are joined up to a hundred times this, the nearest
   /// first, so that no features are lost.
   double gap_tolerance = 1e-6;

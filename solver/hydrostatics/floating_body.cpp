@@ -15,6 +15,7 @@
 #include "geometry/bezier/element_jet.h"
 #include "geometry/errors.h"
 #include "geometry/intersection/clipped_cell.h"
+#include "geometry/intersection/rounding_length.h"
 #include "geometry/nurbs/curve.h"
 #include "quadrature/cut_region.h"
 #include "quadrature/parallel.h"
@@ -65,7 +66,8 @@ struct FloatingBody::Elements {
   /// Of elements that are cut already.
   std::vector<std::optional<geometry::CuttableFace>> cells;
 
-  double size() const { return box.diagonal(); }
+  /// What tolerances and shifts are relative to.
+  double size() const { return geometry::rounding_length(box.lower, box.upper); }
 
   void measure_scales();
   void integrate(int threads);
@@ -79,7 +81,7 @@ struct FloatingBody::Elements {
 
 void FloatingBody::Elements::measure_scales() {
   scales.elements = table.elements.size();
-  scales.radius = 0.5 * size();
+  scales.radius = 0.5 * box.diagonal();
   scales.coordinate = std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
   WettedArray rough = WettedArray::Zero();
   for (const BezierElement<3>& element : table.elements)
@@ -274,8 +276,7 @@ Candidate candidate(ElementPiece<3> piece, const Vector3& direction) {
 double FloatingBody::lowest(const Vector3& direction) const {
   // Enough for any point, and for lines of lowest points that follow a parameter; others follow diagonals.
   constexpr int most_bisections = 20000;
-  const double farthest_out = elements_->size() + elements_->reference.norm();
-  const double rounding = 2.0 * std::numeric_limits<double>::epsilon() * farthest_out;
+  const double rounding = 2.0 * std::numeric_limits<double>::epsilon() * elements_->size();
   double reached = std::numeric_limits<double>::infinity();
   std::priority_queue<Candidate> queue;
   const auto push = [&](ElementPiece<3> piece) {

@@ -249,6 +249,30 @@ TEST(Clip, RandomCutsAddUp) {
   }
 }
 
+/// What a yard's or a map's coordinates leave: rounding of them, not of the solid's size, is what counts as nothing.
+TEST(Clip, OfSolidsFarFromTheOrigin) {
+  const AffineMap<3> lie = rotation(Axis{Point3::Zero(), {1.0, 2.0, 0.5}}, 0.7);
+  const Boundary<3> near = transform<3>(cylinder(1.0, 6.0, {0.0, 0.0, -3.0}), lie);
+  const Vector3 slanting = Vector3(0.1, 0.2, 1.0).normalized();
+  for (const double far : {1e2, 1e3, 1e4, 1e5}) {
+    const Vector3 place(far, -far, 0.5 * far);
+    const Boundary<3> solid = transform<3>(near, translation<3>(place));
+    const auto expect_same = [&](const ClipTool& here, const ClipTool& there) {
+      const Boundary<3> cut = clip(solid, there);
+      EXPECT_TRUE(orient(cut).topology.closed) << far;
+      // Measured where it was.
+      const Measures found = face_measures(transform<3>(cut, translation<3>(-place)));
+      const Measures expected = face_measures(clip(near, here));
+      EXPECT_NEAR(found.content, expected.content, 3e-14 * far);
+      EXPECT_NEAR(found.boundary, expected.boundary, 1e-13 * far);
+    };
+    expect_same(PlaneTool{Point3::Zero(), slanting}, PlaneTool{place, slanting});
+    expect_same(SphereTool{Point3::Zero(), 1.5, KeptSide::outside}, SphereTool{place, 1.5, KeptSide::outside});
+    expect_same(CylinderTool{Point3::Zero(), slanting, 0.4, KeptSide::outside},
+                CylinderTool{place, slanting, 0.4, KeptSide::outside});
+  }
+}
+
 TEST(Clip, Refusals) {
   EXPECT_THAT(refusal([] {
                 clip(cube(1.0), PlaneTool{Point3(0, 0, -1), Vector3::UnitZ()});

@@ -218,6 +218,28 @@ TEST(PlaneSection, TellsTheSidesOfTangentPlanes) {
   }
 }
 
+/// The section of a cylinder by a plane through its axis' middle is an ellipse of area pi / cos, at any place.
+TEST(PlaneSection, OfSolidsFarFromTheOrigin) {
+  const Vector3 axis = Vector3(1.0, 2.0, 0.5).normalized();
+  const Vector3 normal = Vector3(1.1, 1.7, 0.2).normalized();
+  const Boundary<3> lying =
+      transform<3>(cylinder(1.0, 8.0, {0.0, 0.0, -4.0}),
+                   rotation(Axis{Point3::Zero(), Vector3::UnitZ().cross(axis)}, std::acos(axis.z())));
+  for (const double far : {1e2, 1e3, 1e4, 1e5}) {
+    const Vector3 place(far, -far, 0.5 * far);
+    const Boundary<3> boundary = transform<3>(lying, translation<3>(place));
+    const PlaneSection section = plane_section(boundary, plane_frame(place, normal));
+    EXPECT_EQ(section.shift, 0.0);
+    EXPECT_TRUE(section.chains.empty() && section.isolated.empty() && section.touching.empty());
+    ASSERT_EQ(section.loops.size(), 1u) << far;
+    // About the origin of the plane's coordinates, which is as far away.
+    EXPECT_NEAR(section_area(section.loops[0].curve), pi / axis.dot(normal), 2e-15 * far * far + 1e-13 * far);
+    for (const SectionPiece& piece : section.loops[0].curve.pieces)
+      for (const double t : {0.0, 0.3, 1.0})
+        EXPECT_NEAR((evaluate_jet(piece, t).place.point - place).dot(normal), 0.0, 1e-15 * far);
+  }
+}
+
 TEST(PlaneSection, OfATorusAtFourHeights) {
   for (const Boundary<3>& ring :
        {torus(2.0, 0.5), sixteen_patch_torus(2.0, 0.5), testing::extracted(torus(2.0, 0.5))}) {
