@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "geometry/topology/edge_curve.h"
 
@@ -19,7 +20,8 @@ double distance_from_segment(const Point3& point, const Point3& from, const Poin
 /// Parameters along a curve at which it is divided.
 class CurveDivider {
  public:
-  CurveDivider(const EdgeCurve& curve, double tolerance) : curve_(curve), tolerance_(tolerance) {}
+  CurveDivider(const EdgeCurve& curve, double tolerance)
+      : curve_(curve), tolerance_(tolerance), breakpoints_(curve.breakpoints()) {}
 
   /// Rising, the ends of the domain among them.
   std::vector<double> divide(Interval domain, const std::vector<double>& breakpoints, bool is_closed) const {
@@ -41,12 +43,18 @@ class CurveDivider {
  private:
   static constexpr int max_depth = 20;
 
+  /// The largest distance from the chord at a few places of each span.
   double bulge(double from, double to) const {
     const Point3 start = curve_.at(from);
     const Point3 end = curve_.at(to);
     double largest = 0.0;
-    for (const double part : {0.18, 0.36, 0.5, 0.64, 0.82})
-      largest = std::max(largest, distance_from_segment(curve_.at(std::lerp(from, to, part)), start, end));
+    auto next = std::ranges::upper_bound(breakpoints_, from);
+    for (double left = from; left < to;) {
+      const double right = next != breakpoints_.end() && *next < to ? *next++ : to;
+      for (const double part : {0.18, 0.36, 0.5, 0.64, 0.82})
+        largest = std::max(largest, distance_from_segment(curve_.at(std::lerp(left, right, part)), start, end));
+      left = right;
+    }
     return largest;
   }
 
@@ -62,6 +70,7 @@ class CurveDivider {
 
   const EdgeCurve& curve_;
   double tolerance_;
+  std::vector<double> breakpoints_;
 };
 
 /// Where the other use comes nearest to the points, in the direction of the edge; the ends are its own.

@@ -50,6 +50,21 @@ Vector2 stretch_of(const NurbsSurface<3>& surface, const Point2& lower, const Po
   return lengths.cwiseMax(1e-6 * lengths.maxCoeff());
 }
 
+/// Whether the control points lie in one plane: that of the first of them, the one farthest from it, and the one
+/// farthest from the line through both.
+bool lies_in_plane(const NurbsSurface<3>& surface) {
+  const Points<3> points = surface.control_points();
+  const Point3 first = points.col(0);
+  Eigen::Index farthest = 0;
+  const double size = (points.colwise() - first).colwise().norm().maxCoeff(&farthest);
+  const Vector3 along = points.col(farthest) - first;
+  Eigen::Index beside = 0;
+  const double area = (points.colwise() - first).colwise().cross(along).colwise().norm().maxCoeff(&beside);
+  const Vector3 normal = (points.col(beside) - first).cross(along);
+  const double rounding = 1e-13 * (size + points.cwiseAbs().maxCoeff());
+  return area > 0.0 && (normal.transpose() / area * (points.colwise() - first)).cwiseAbs().maxCoeff() <= rounding;
+}
+
 double distance_from_segment(const Point3& point, const Point3& from, const Point3& to) {
   const Vector3 direction = to - from;
   const double squared_length = direction.squaredNorm();
@@ -72,6 +87,9 @@ std::vector<double> seed_lines(const KnotVector& knots, Interval range) {
 }
 
 }  // namespace
+
+FilledFace::FilledFace(const NurbsSurface<3>& surface, ConstrainedDelaunay mesh)
+    : surface_(&surface), is_flat_(lies_in_plane(surface)), mesh_(std::move(mesh)) {}
 
 std::optional<FilledFace> FilledFace::fill(const NurbsSurface<3>& surface, const std::vector<LoopPolygon>& loops,
                                            const std::vector<Point3>& points) {
@@ -120,7 +138,7 @@ bool FilledFace::insert(const Point2& uv) {
 void FilledFace::add_seeds() {
   const KnotVector& in_u = surface_->knots_u();
   const KnotVector& in_v = surface_->knots_v();
-  if (in_u.degree() == 1 && in_v.degree() == 1) return;
+  if (is_flat_ || (in_u.degree() == 1 && in_v.degree() == 1)) return;
   Point2 lower = vertices_[4].uv;
   Point2 upper = lower;
   for (std::size_t i = 4; i < vertices_.size(); ++i) {
@@ -156,7 +174,7 @@ bool FilledFace::looks_away(const ConstrainedDelaunay::Triangle& triangle, const
 std::optional<Point2> FilledFace::where_to_divide(int number, double tolerance) const {
   const ConstrainedDelaunay::Triangle& triangle = mesh_.triangles()[static_cast<std::size_t>(number)];
   std::optional<Point2> place;
-  double worst = tolerance;
+  double worst = is_flat_ ? std::numeric_limits<double>::infinity() : tolerance;
   double longest = 0.0;
   std::optional<Point2> middle_of_longest;
   for (std::size_t i = 0; i < 3; ++i) {

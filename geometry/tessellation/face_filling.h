@@ -26,7 +26,8 @@ class FilledFace {
   static std::optional<FilledFace> fill(const NurbsSurface<3>& surface, const std::vector<LoopPolygon>& loops,
                                         const std::vector<Point3>& points);
 
-  /// Puts points in until middles of edges and triangles are within the tolerance of the surface.
+  /// Puts points in until middles of edges and triangles are within the tolerance of the surface (any triangles are, in
+  /// a plane), and triangles look where it looks.
   void refine(double tolerance);
 
   /// Puts the middle of the inner edges between two vertices of the mesh in; whether there were any.
@@ -43,7 +44,7 @@ class FilledFace {
     int number = 0;
   };
 
-  FilledFace(const NurbsSurface<3>& surface, ConstrainedDelaunay mesh) : surface_(&surface), mesh_(std::move(mesh)) {}
+  FilledFace(const NurbsSurface<3>& surface, ConstrainedDelaunay mesh);
   bool add_loops(const std::vector<LoopPolygon>& loops, const std::vector<Point3>& points);
   void add_seeds();
   bool insert(const Point2& uv);
@@ -53,6 +54,8 @@ class FilledFace {
   bool looks_away(const ConstrainedDelaunay::Triangle& triangle, const Point2& middle) const;
 
   const NurbsSurface<3>* surface_;
+  /// The surface lies in a plane, to rounding.
+  bool is_flat_;
   ConstrainedDelaunay mesh_;
   /// Of each vertex of mesh_.
   std::vector<Vertex> vertices_;

@@ -98,6 +98,11 @@ bool EdgeCurve::has_straight_legs() const {
   return exact_ && exact_->degree() == 1 && exact_->is_polynomial();
 }
 
+std::vector<double> EdgeCurve::breakpoints() const {
+  if (exact_) return exact_->knots().breakpoints();
+  return divided(pcurve_.knots().breakpoints(), crossed_knot_lines(*surface_, pcurve_));
+}
+
 void EdgeCurve::sample() {
   const bool straight_legs = has_straight_legs();
   const std::vector<double> parameters =

@@ -24,6 +24,10 @@ class EdgeCurve {
   /// By Gauss-Legendre rules on the legs of the polygon: to 1e-3 of itself on wild curves, 1e-7 on gentle ones.
   double length(Interval part) const;
   double length() const { return length(domain()); }
+  /// Rising, the ends of the domain among them: where the curve in space may be less smooth. Of a pcurve that crosses
+  /// knot lines of the surface otherwise than along the other parameter: its own breakpoints, its spans divided evenly
+  /// into at least as many parts as it may cross.
+  std::vector<double> breakpoints() const;
   /// Diagonal of the box of the curve's points.
   double diagonal() const { return (upper_ - lower_).norm(); }
   /// Number of legs of the polygon that have a part in the interval.

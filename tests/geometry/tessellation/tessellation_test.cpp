@@ -1,9 +1,11 @@
 #include "geometry/tessellation/tessellation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -12,6 +14,7 @@
 #include "geometry/propeller/propeller.h"
 #include "geometry/propeller/series.h"
 #include "geometry/shapes/solids.h"
+#include "geometry/shapes/swept_solids.h"
 #include "geometry/tspline/extraction.h"
 #include "tests/geometry/refusals.h"
 
@@ -89,6 +92,37 @@ TEST(Tessellation, OfSpheresWithinRoundingOfTheToleranceWhateverItIs) {
 
 // A sphere with a hole off its centre, crossed holes in a box, and a figure of eight where a plane touches a torus from
 // inside.
+/// A bar whose bottom is level but for one control point of many, so that few parameters of its edge tell; its ends are
+/// flat, so what they are divided by is their edges alone.
+TEST(Tessellation, FindsWhatHappensBetweenTwoKnots) {
+  constexpr int spans = 50;
+  constexpr double height = 0.05;
+  std::vector<double> breaks;
+  for (int i = 0; i <= spans; ++i) breaks.push_back(static_cast<double>(i) / spans);
+  const KnotVector knots = KnotVector::clamped(2, breaks);
+  const std::vector<double> abscissae = knots.greville_abscissae();
+  const auto line = [](const Point2& from, const Point2& to) {
+    Points<2> ends(2, 2);
+    ends << from, to;
+    return NurbsCurve<2>::from_points(KnotVector::bezier(1), ends);
+  };
+  for (const int raised : {9, 14, 22, 37}) {
+    Points<2> points(2, knots.basis_count());
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+      points.col(i) << abscissae[static_cast<std::size_t>(i)], i == raised ? -height : 0.0;
+    const Boundary<2> region{{{"bottom", NurbsCurve<2>::from_points(knots, points), 1},
+                              {"right", line({1.0, 0.0}, {1.0, 1.0}), 1},
+                              {"top", line({1.0, 1.0}, {0.0, 1.0}), 1},
+                              {"left", line({0.0, 1.0}, {0.0, 0.0}), 1}}};
+    // x is the parameter, so the bump's area is that under its basis function.
+    const Boundary<3> bar = extrude(region, {0.0, 0.0, 0.1});
+    expect_mesh(bar, 0.1 * (1.0 + height / spans), 2.4, 1e-4);
+    const TriangleMesh mesh = mesh_of(bar, 1e-4);
+    const auto is_end = [&](int patch) { return bar.patches[static_cast<std::size_t>(patch)].name.starts_with("end"); };
+    EXPECT_LT(std::ranges::count_if(mesh.patches, is_end), 500);
+  }
+}
+
 TEST(Tessellation, OfTrimmedSolids) {
   Boundary<3> holed =
       clip(orient(sphere(1.0)).boundary, CylinderTool{{0.3, 0.0, 0.0}, Vector3::UnitZ(), 0.4, KeptSide::outside});
