@@ -88,7 +88,9 @@ CurveFit<Dim> fit_to_tolerance(const FitFrame<Dim>& frame, const Points<Dim>& po
 template <int Dim>
 int count_by_rule(const FitFrame<Dim>& frame) {
   const Points<Dim>& points = frame.prepared().data.points;
-  const int wanted = points.cols() < 3 ? 0 : inversion_control_points(points);
+  const int wanted = points.cols() < 3        ? 0
+                     : frame.options().closed ? inversion_control_points(points)
+                                              : open_inversion_control_points(points);
   return std::clamp(wanted, frame.fewest_control_points(),
                     std::max(frame.fewest_control_points(), frame.most_control_points()));
 }

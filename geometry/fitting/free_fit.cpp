@@ -77,12 +77,25 @@ template <int Dim>
       fmt::format("curve fit: the points do not determine all {} control points; give fewer", control_points));
 }
 
-/// Knots where the errors are: uniform ones for four fifths of the control points, the rest added.
+/// A span without data: its control points hang on neighbours that may be far away.
+template <int Dim>
+bool has_empty_span(const FitState<Dim>& state) {
+  std::vector<double> sorted = state.parameters;
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 0; i + 1 < state.breakpoints.size(); ++i) {
+    const auto next = std::lower_bound(sorted.begin(), sorted.end(), state.breakpoints[i]);
+    if (next == sorted.end() || *next > state.breakpoints[i + 1]) return true;
+  }
+  return false;
+}
+
+/// Knots where the errors are: for four fifths of the control points uniform ones, or where the data are, if uniform
+/// ones leave spans without any; the rest added.
 template <int Dim>
 FitState<Dim> grow_knots(const FitFrame<Dim>& frame, int control_points) {
   const int first = std::max(frame.fewest_control_points(), 4 * control_points / 5);
   FitState<Dim> state = frame.start(FitKnots::uniform, first);
-  if (!frame.solve(state, {})) {
+  if (has_empty_span(state) || !frame.solve(state, {})) {
     state = frame.start(FitKnots::piegl_tiller, first);
     if (!frame.solve(state, {})) refuse<Dim>(control_points);
   }

@@ -16,6 +16,13 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
+/// Of the area vector of sides a and b that meet in a point, whose coordinates are known to half a unit in their last
+/// place.
+template <int Dim>
+double area_rounding(const Point<Dim>& here, const Vector<Dim>& a, const Vector<Dim>& b) {
+  return 2.0 * epsilon * here.cwiseAbs().maxCoeff() * (a.norm() + b.norm());
+}
+
 template <int Dim>
 void require_section(const Points<Dim>& points) {
   if (points.cols() < 3)
@@ -59,9 +66,7 @@ std::vector<double> circle_radii(const Points<Dim>& points) {
     const Vector<Dim> a = here - points.col((i + count - 1) % count);
     const Vector<Dim> b = points.col((i + 1) % count) - here;
     const double twice_area = area_vector(a, b).norm();
-    // Coordinates are known to half a unit in their last place.
-    const double rounding = 2.0 * epsilon * here.cwiseAbs().maxCoeff() * (a.norm() + b.norm());
-    radii[static_cast<std::size_t>(i)] = twice_area <= rounding
+    radii[static_cast<std::size_t>(i)] = twice_area <= area_rounding<Dim>(here, a, b)
                                              ? std::numeric_limits<double>::infinity()
                                              : a.norm() * b.norm() * (a + b).norm() / (2.0 * twice_area);
   }
@@ -147,6 +152,22 @@ int inversion_control_points(const Points<Dim>& points) {
   return std::max(curvature_inversions(points), static_cast<int>(points.cols() / 2));
 }
 
+template <int Dim>
+int open_inversion_control_points(const Points<Dim>& points) {
+  int inversions = 1;
+  Vector3 before = Vector3::Zero();
+  for (Eigen::Index i = 1; i + 1 < points.cols(); ++i) {
+    const Point<Dim> here = points.col(i);
+    const Vector<Dim> a = here - points.col(i - 1);
+    const Vector<Dim> b = points.col(i + 1) - here;
+    const Vector3 turn = area_vector(a, b);
+    if (turn.norm() <= area_rounding<Dim>(here, a, b)) continue;
+    if (turn.dot(before) < 0.0) ++inversions;
+    before = turn;
+  }
+  return std::max(inversions, static_cast<int>(points.cols() / 2));
+}
+
 template std::vector<double> circle_radii(const Points<2>&);
 template std::vector<double> circle_radii(const Points<3>&);
 template std::vector<double> interior_angles(const Points<2>&);
@@ -155,5 +176,7 @@ template int curvature_inversions(const Points<2>&);
 template int curvature_inversions(const Points<3>&);
 template int inversion_control_points(const Points<2>&);
 template int inversion_control_points(const Points<3>&);
+template int open_inversion_control_points(const Points<2>&);
+template int open_inversion_control_points(const Points<3>&);
 
 }  // namespace isorim::geometry

@@ -55,4 +55,9 @@ int curvature_inversions(const Points<Dim>& points);
 template <int Dim>
 int inversion_control_points(const Points<Dim>& points);
 
+/// The same for an open sequence, whose ends are no neighbours and may coincide. Turns that are rounding are none, so
+/// points on a line count as having no inversion.
+template <int Dim>
+int open_inversion_control_points(const Points<Dim>& points);
+
 }  // namespace isorim::geometry

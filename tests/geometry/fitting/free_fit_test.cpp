@@ -1,8 +1,10 @@
 #include "geometry/fitting/free_fit.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -217,6 +219,34 @@ TEST(SpanJet, MatchesDifferences) {
 }
 
 /// Control points are optimal, so to first order only the knots count: the step must go downhill, and far.
+/// Points of a circle that crowd together on one side, as a scanner leaves them: uniform knots would have spans without
+/// any, and the curve might go anywhere there.
+TEST(FreeFit, StaysOnACircleWherePointsAreFew) {
+  Random random(11);
+  for (int trial = 0; trial < 10; ++trial) {
+    std::vector<double> angles;
+    for (int i = 0; i < 60; ++i) angles.push_back(2.0 * pi * std::pow(random.real(0.0, 1.0), 6));
+    std::sort(angles.begin(), angles.end());
+    Points<2> points(2, 60);
+    double gap = 0.0;
+    for (Eigen::Index i = 0; i < 60; ++i) {
+      const double angle = angles[static_cast<std::size_t>(i)];
+      const double next = i < 59 ? angles[static_cast<std::size_t>(i) + 1] : angles.front() + 2.0 * pi;
+      points.col(i) << std::cos(angle), std::sin(angle);
+      gap = std::max(gap, next - angle);
+    }
+    for (const int control_points : {0, 12, 20, 24, 29}) {
+      CurveFitOptions<2> options;
+      options.control_points = control_points;
+      const NurbsCurve<2> curve = fit_points<2>(points, options).curve;
+      // A chord across the largest gap leaves the circle by its sagitta, a curve may do so on either side.
+      const double reach = 2.0 * (1.0 - std::cos(0.5 * gap));
+      for (int k = 0; k < 1000; ++k)
+        EXPECT_NEAR(evaluate(curve, k / 1000.0).norm(), 1.0, reach) << trial << ' ' << control_points;
+    }
+  }
+}
+
 TEST(KnotSteps, LowerTheObjective) {
   for (const bool closed : {true, false})
     for (int degree = 2; degree <= 5; ++degree)

@@ -77,6 +77,27 @@ TEST(OpenFit, InterpolatesWithAnyDegreeAndEnds) {
       }
 }
 
+/// Without a number of control points half as many as there are points are taken, whatever rounding makes of their
+/// turns and wherever the ends are.
+TEST(OpenFit, TakesHalfAsManyControlPointsOnLinesAndWhereTheEndsMeet) {
+  Points<2> line(2, 30);
+  Points<2> circle(2, 41);
+  for (Eigen::Index i = 0; i < line.cols(); ++i)
+    line.col(i) << 0.1 * static_cast<double>(i), 0.3 * static_cast<double>(i);
+  for (Eigen::Index i = 0; i < circle.cols(); ++i) {
+    const double angle = 2.0 * pi * static_cast<double>(i % 40) / 40.0;
+    circle.col(i) << std::cos(angle), std::sin(angle);
+  }
+  CurveFitOptions<2> options;
+  options.closed = false;
+  const CurveFit<2> of_line = fit_points<2>(line, options);
+  EXPECT_EQ(of_line.control_points, 15);
+  EXPECT_LT(of_line.quality.max_distance, 1e-14);
+  const CurveFit<2> of_circle = fit_points<2>(circle, options);
+  EXPECT_EQ(of_circle.control_points, 20);
+  EXPECT_LT(of_circle.quality.max_distance, 2e-4);
+}
+
 TEST(OpenFit, MeetsItsEnds) {
   const Points<3> points = helix_points(60);
   for (int degree = 2; degree <= 6; ++degree) {
