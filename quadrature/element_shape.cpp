@@ -211,13 +211,19 @@ std::complex<double> refined(const geometry::Vector<Dim>& offset, const geometry
 }  // namespace
 
 template <int Dim>
-ElementShape<Dim> element_shape(const ElementNet<Dim>& net, double field_degree, double tolerance) {
+ElementShape<Dim> plain_shape(const ElementNet<Dim>& net) {
   ElementShape<Dim> shape;
   shape.net = net;
   set_sphere(shape);
   add_samples(shape);
-  for (std::size_t d = 0; d < Dim - 1; ++d) shape.growth[d] = jacobian_growth(net, d, field_degree, tolerance);
   set_half_length(shape);
+  return shape;
+}
+
+template <int Dim>
+ElementShape<Dim> element_shape(const ElementNet<Dim>& net, double field_degree, double tolerance) {
+  ElementShape<Dim> shape = plain_shape(net);
+  for (std::size_t d = 0; d < Dim - 1; ++d) shape.growth[d] = jacobian_growth(net, d, field_degree, tolerance);
   return shape;
 }
 
@@ -258,6 +264,8 @@ std::complex<double> singularity_on_line(const geometry::Vector<Dim>& offset, co
              : refined<Dim>(offset, tangent, curvature, guess);
 }
 
+template ElementShape<2> plain_shape(const ElementNet<2>&);
+template ElementShape<3> plain_shape(const ElementNet<3>&);
 template ElementShape<2> element_shape(const ElementNet<2>&, double, double);
 template ElementShape<3> element_shape(const ElementNet<3>&, double, double);
 template NearestPlace<2> nearest_place(const ElementShape<2>&, const Cell<1>&, const geometry::Point2&);

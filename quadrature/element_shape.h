@@ -50,6 +50,10 @@ struct ElementShape {
 template <int Dim>
 ElementShape<Dim> element_shape(const ElementNet<Dim>& net, double field_degree, double tolerance);
 
+/// Without the growth: all that nearest_place() needs.
+template <int Dim>
+ElementShape<Dim> plain_shape(const ElementNet<Dim>& net);
+
 /// The place of a cell whose point lies nearest to a target, or nearly so: the nearest of the shape's samples, improved
 /// by Newton's method kept to the cell. An aid for decisions: rules that are made about it converge if it is a bit off.
 template <int Dim>

@@ -1,23 +1,59 @@
 #include "solver/bem/boundary_locator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <numbers>
 
 #include "geometry/bezier/element_jet.h"
+#include "quadrature/parallel.h"
 
 namespace isorim::solver {
 
+namespace {
+
+/// Of the solid angle: one decides by whether it exceeds a half.
+constexpr double angle_tolerance = 1e-3;
+
+/// Cells along the longest side of the box: twice as many as points, if these fill it.
 template <int Dim>
-BoundaryLocator<Dim>::BoundaryLocator(const geometry::ElementTable<Dim>& table,
-                                      const quadrature::TargetRules<Dim>& rules)
-    : table_(&table), rules_(&rules) {
-  // Only places are asked of the shapes, not rules.
-  constexpr double rough = 1e-2;
+int cell_count(std::size_t point_count) {
+  constexpr double least = 16.0;
+  constexpr double most = Dim == 2 ? 2000.0 : 160.0;
+  const double along = 2.0 * std::pow(static_cast<double>(point_count), 1.0 / Dim);
+  return static_cast<int>(std::clamp(along, least, most));
+}
+
+}  // namespace
+
+template <int Dim>
+BoundaryLocator<Dim>::BoundaryLocator(const geometry::ElementTable<Dim>& table)
+    : table_(&table), rules_(table, {angle_tolerance, 0}) {
   shapes_.reserve(table.elements.size());
   for (const geometry::BezierElement<Dim>& element : table.elements)
-    shapes_.push_back(quadrature::element_shape(quadrature::element_net(table, element), 1.0, rough));
+    shapes_.push_back(quadrature::plain_shape(quadrature::element_net(table, element)));
+}
+
+template <int Dim>
+void BoundaryLocator<Dim>::prepare(std::size_t point_count, double margin, int threads) {
+  regions_ = std::make_unique<CellRegions<Dim>>(*table_, cell_count<Dim>(point_count), margin);
+  is_inside_.assign(static_cast<std::size_t>(regions_->count()), std::nullopt);
+  quadrature::parallel_for(is_inside_.size(), threads, [&](std::size_t region, int) {
+    // They disagree where the boundary leaks.
+    quadrature::NodeBuffer<Dim> buffer;
+    std::size_t inside = 0;
+    const auto& samples = regions_->samples(static_cast<int>(region));
+    for (const geometry::Point<Dim>& sample : samples) inside += winding_number(sample, buffer) > 0.5 ? 1 : 0;
+    if (inside == 0 || inside == samples.size()) is_inside_[region] = inside > 0;
+  });
+}
+
+template <int Dim>
+std::optional<bool> BoundaryLocator<Dim>::known_inside(const geometry::Point<Dim>& point) const {
+  const int region = regions_ ? regions_->region(point) : CellRegions<Dim>::touched;
+  if (region == CellRegions<Dim>::touched) return std::nullopt;
+  return is_inside_[static_cast<std::size_t>(region)];
 }
 
 template <int Dim>
@@ -47,7 +83,7 @@ double BoundaryLocator<Dim>::winding_number(const geometry::Point<Dim>& point,
   target.position = point;
   double angle = 0.0;
   for (std::size_t e = 0; e < shapes_.size(); ++e) {
-    const quadrature::NodeView<Dim> nodes = rules_->nodes(static_cast<int>(e), target, buffer);
+    const quadrature::NodeView<Dim> nodes = rules_.nodes(static_cast<int>(e), target, buffer);
     for (std::size_t q = 0; q < nodes.size(); ++q) {
       double squared = 0.0;
       double flux = 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,6 +22,9 @@ namespace {
 constexpr double on_boundary = 1e-10;
 /// Nearer than this, in units of the nearest element's size, the linear simple solution is taken off.
 constexpr double near_boundary = 1.0;
+
+/// From so many points on it is worth while to divide the domain into cells.
+constexpr std::size_t many_points = 200;
 
 /// Of all elements, so that densities are as exact as the rules.
 template <int Dim>
@@ -43,7 +47,7 @@ class Evaluator {
         points_(points),
         options_(options),
         rules_(space.table, {options.tolerance, largest_field_degree(space)}),
-        locator_(space.table, rules_),
+        locator_(space.table),
         representation_(problem, space, rules_, static_cast<int>(solution.potential.cols())),
         contact_(on_boundary * geometry::bounding_box(space.table).diagonal()),
         results_(static_cast<std::size_t>(points.cols())),
@@ -53,6 +57,7 @@ class Evaluator {
   }
 
   std::vector<PointEvaluation<Dim>> run() {
+    if (results_.size() >= many_points) locator_.prepare(results_.size(), 2.0 * contact_, options_.threads);
     for_points([&](std::size_t i, Thread& thread) { locate(i, thread); });
     std::vector<std::size_t> inside;
     for (std::size_t i = 0; i < results_.size(); ++i) {
@@ -98,6 +103,12 @@ class Evaluator {
 
   void locate(std::size_t i, Thread& thread) {
     const geometry::Point<Dim> x = points_.col(static_cast<Eigen::Index>(i));
+    const std::optional<bool> known = locator_.known_inside(x);
+    if (known) {
+      results_[i].location = *known == problem_.exterior ? Location::outside : Location::inside;
+      if (results_[i].location == Location::inside) places_[i] = locator_.nearest(x);
+      return;
+    }
     places_[i] = locator_.nearest(x);
     if (places_[i].distance <= contact_ && locator_.is_kept(places_[i], thread.room.buffer)) {
       results_[i].location = Location::on_boundary;

@@ -58,7 +58,8 @@ void FieldDensities<Dim>::fill_products(int element, const quadrature::NodeView<
     bernstein_values(field.degree[d], static_cast<int>(nodes.size()), nodes.place[d].data(), polynomials_[d].data(),
                      step);
   }
-  products_.assign(n * static_cast<std::size_t>(field.bernstein_count()), 0.0);
+  // What stands in the padding is of no consequence.
+  products_.resize(n * static_cast<std::size_t>(field.bernstein_count()));
   double* product = products_.data();
   if constexpr (Dim == 2) {
     for (int i = 0; i <= field.degree[0]; ++i, product += n)

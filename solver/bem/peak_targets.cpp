@@ -31,10 +31,8 @@ geometry::Vector<Dim> normal_of(const ElementJet<Dim>& jet) {
 template <int Dim>
 PeakTargets<Dim>::PeakTargets(const geometry::ElementTable<Dim>& table, std::vector<RayPeak<Dim>> peaks)
     : peaks_(std::move(peaks)) {
-  // Only places are asked of the shapes, not rules.
-  constexpr double rough = 1e-2;
   for (const geometry::BezierElement<Dim>& element : table.elements)
-    shapes_.push_back(quadrature::element_shape(quadrature::element_net(table, element), 1.0, rough));
+    shapes_.push_back(quadrature::plain_shape(quadrature::element_net(table, element)));
 }
 
 template <int Dim>
