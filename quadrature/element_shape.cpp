@@ -48,9 +48,9 @@ struct Spectrum {
 };
 
 /// Of the Jacobian and its length (which is no polynomial, whatever the element), from `count` points on each of a few
-/// parameter lines.
+/// parameter lines. Seen from the element's centre: rounding is relative to its own size then, wherever it lies.
 template <int Dim>
-Spectrum jacobian_spectrum(const ElementNet<Dim>& net, std::size_t direction, int count) {
+Spectrum jacobian_spectrum(const ElementShape<Dim>& shape, std::size_t direction, int count) {
   using Value = Eigen::Matrix<double, Dim + 1, 1>;
   Spectrum spectrum{std::vector<double>(static_cast<std::size_t>(count), 0.0)};
   std::vector<Value> values(static_cast<std::size_t>(count));
@@ -60,7 +60,7 @@ Spectrum jacobian_spectrum(const ElementNet<Dim>& net, std::size_t direction, in
     geometry::Point<Dim - 1> place = geometry::Point<Dim - 1>::Constant(line);
     for (int k = 0; k < count; ++k) {
       place[static_cast<Eigen::Index>(direction)] = chebyshev_place(k, count);
-      const geometry::Vector<Dim> normal = jacobian(element_jet<Dim>(net, place, geometry::Point<Dim>::Zero()));
+      const geometry::Vector<Dim> normal = jacobian(element_jet<Dim>(shape.net, place, shape.centre));
       values[static_cast<std::size_t>(k)] << normal, normal.norm();
       largest = std::max(largest, normal.norm());
     }
@@ -72,15 +72,15 @@ Spectrum jacobian_spectrum(const ElementNet<Dim>& net, std::size_t direction, in
 
 /// With as many points as it takes.
 template <int Dim>
-Growth jacobian_growth(const ElementNet<Dim>& net, std::size_t direction, double field_degree, double tolerance) {
+Growth jacobian_growth(const ElementShape<Dim>& shape, std::size_t direction, double field_degree, double tolerance) {
   constexpr int most_points = 150;
   constexpr double rounding = 1e-14;
   const double negligible = std::max(0.03 * tolerance, rounding);
-  int count = 4 * net.degree[direction] + 8;
-  Spectrum spectrum = jacobian_spectrum(net, direction, count);
+  int count = 4 * shape.net.degree[direction] + 8;
+  Spectrum spectrum = jacobian_spectrum(shape, direction, count);
   while (!spectrum.is_resolved(negligible) && count < most_points) {
     count *= 2;
-    spectrum = jacobian_spectrum(net, direction, count);
+    spectrum = jacobian_spectrum(shape, direction, count);
   }
   for (double& size : spectrum.sizes) size = size > negligible ? size : 0.0;
   return {spectrum.sizes, field_degree};
@@ -223,7 +223,7 @@ ElementShape<Dim> plain_shape(const ElementNet<Dim>& net) {
 template <int Dim>
 ElementShape<Dim> element_shape(const ElementNet<Dim>& net, double field_degree, double tolerance) {
   ElementShape<Dim> shape = plain_shape(net);
-  for (std::size_t d = 0; d < Dim - 1; ++d) shape.growth[d] = jacobian_growth(net, d, field_degree, tolerance);
+  for (std::size_t d = 0; d < Dim - 1; ++d) shape.growth[d] = jacobian_growth(shape, d, field_degree, tolerance);
   return shape;
 }
 

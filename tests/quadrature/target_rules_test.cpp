@@ -404,6 +404,28 @@ TEST(TargetRules, TheUnitOfLengthPlaysNoPart) {
 }
 
 // Far below what can be checked: the rules stay of a reasonable size and finite.
+// A small element on a large body: its speeds must not be known to the body's rounding only.
+TEST(TargetRules, ThePlaceOfAnElementPlaysNoPart) {
+  const Vector3 shift(1e4, -3e4, 2e4);
+  for (const auto& [name, table] : testing::surface_elements()) {
+    ElementTable<3> shifted = table;
+    for (std::size_t k = 0; k < shifted.nets.size(); k += 4) {
+      for (std::size_t c = 0; c < 3; ++c)
+        shifted.nets[k + c] += shifted.nets[k + 3] * shift[static_cast<Eigen::Index>(c)];
+    }
+    const TargetRules<3> rules(table, {1e-12, degree});
+    const TargetRules<3> shifted_rules(shifted, {1e-12, degree});
+    NodeBuffer<3> buffer;
+    for (const double distance : {0.1, 1.0, 5.0, 1e3}) {
+      Target<3> target = near_target(table, {0.3, 0.6}, distance);
+      const auto count = static_cast<double>(rules.nodes(0, target, buffer).size());
+      target.position += shift;
+      EXPECT_LE(static_cast<double>(shifted_rules.nodes(0, target, buffer).size()), 1.05 * count)
+          << words(name, target, distance);
+    }
+  }
+}
+
 TEST(TargetRules, TinyDistancesDoNoHarm) {
   for (const auto& [name, table] : testing::surface_elements()) {
     const TargetRules<3> rules(table, {1e-12, degree});
