@@ -59,6 +59,24 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
   file.commit();
 }
 
+void require_writable_file(const std::filesystem::path& path) {
+  const AtomicFile probe(path);
+}
+
+void require_writable_folder(const std::filesystem::path& folder) {
+  if (folder.empty()) throw InputError("the name of the output folder is empty");
+  std::error_code error;
+  std::filesystem::path existing = std::filesystem::absolute(folder, error);
+  while (existing.has_relative_path() && !std::filesystem::exists(existing, error)) existing = existing.parent_path();
+  if (!std::filesystem::is_directory(existing, error)) {
+    throw InputError(fmt::format("{}: cannot make the folder: '{}' is a file", folder.string(), existing.string()));
+  }
+  if (access(existing.c_str(), W_OK | X_OK) != 0) {
+    throw InputError(fmt::format("{}: cannot write to the folder '{}': {}", folder.string(), existing.string(),
+                                 std::strerror(errno)));
+  }
+}
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -31,6 +31,13 @@ class AtomicFile {
 /// permission, disk full); then the target is as it was.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
+/// Throws InputError as AtomicFile does if a file cannot be made there: to be asked before work that takes long.
+void require_writable_file(const std::filesystem::path& path);
+
+/// Throws InputError, with the path and the reason, if the folder cannot be made or written to, as far as that can be
+/// seen beforehand. Makes nothing.
+void require_writable_folder(const std::filesystem::path& folder);
+
 /// Makes a folder for results, with those that it stands in. Throws InputError with its path if it cannot.
 void make_folder(const std::filesystem::path& folder);
 

@@ -14,6 +14,7 @@
 #include <muParser.h>
 
 #include "geometry/errors.h"
+#include "io/excerpt.h"
 #include "io/expression_names.h"
 
 namespace isorim::io {
@@ -124,12 +125,6 @@ class BoundExpression {
 
 std::string at_character(std::size_t position) {
   return fmt::format("at character {}: ", position + 1);
-}
-
-/// The text as messages show it: no longer than a line.
-std::string excerpt(const std::string& text) {
-  constexpr std::size_t most = 60;
-  return text.size() <= most ? text : text.substr(0, most) + "...";
 }
 
 /// muParser would end the text at a NUL and stumble over the others; white space is no such character.

@@ -261,9 +261,11 @@ class AnalysisChecker {
     const KeyPlace where = condition.where.key("kind", condition.where.place);
     const bool for_potential = kind == BoundaryKind::value || kind == BoundaryKind::flux || kind == BoundaryKind::robin;
     if (for_potential && is_elastic(keys_)) {
-      complain(where, "elasticity has displacement, traction, foundation and symmetry");
+      complain(where, fmt::format("found \"{}\"; elasticity has displacement, traction, foundation and symmetry",
+                                  name_of(kind, boundary_kind_names)));
     } else if (!for_potential && kind != BoundaryKind::symmetry && !is_elastic(keys_)) {
-      complain(where, "a potential has value, flux, robin and symmetry");
+      complain(where, fmt::format("found \"{}\"; a potential has value, flux, robin and symmetry",
+                                  name_of(kind, boundary_kind_names)));
     }
     const bool is_robin = kind == BoundaryKind::robin || kind == BoundaryKind::foundation;
     const bool mixes = kind == BoundaryKind::displacement || kind == BoundaryKind::foundation;

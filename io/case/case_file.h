@@ -161,12 +161,12 @@ std::vector<std::string> property_names(int dim);
 /// "curvature_sign_changes".
 std::vector<std::string> fit_quantity_names();
 
-/// Those that a propeller has besides: "expanded_area_ratio", "developed_area_ratio", "projected_area_ratio",
 /// Those that a hull has besides: "prismatic" and "lcb" (per cent of the length forward of amidships) of the curve of
-/// sectional areas up to the design draught, "offset_distance", "bending_energy", "curvature_sign_changes".
+/// sectional areas up to the design draught, "offset_distance", and of its fairness "bending_energy" and
+/// "curvature_sign_changes".
 std::vector<std::string> hull_quantity_names();
 
-/// "blade_volume", "hub_volume", "control_points_round", "control_points_across".
+/// Those that a propeller has besides: area ratios, volumes, control points (propeller_report.h).
 std::vector<std::string> propeller_quantity_names();
 
 }  // namespace isorim::io

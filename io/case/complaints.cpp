@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/excerpt.h"
 
 namespace isorim::io {
 
@@ -20,7 +21,7 @@ KeyPlace KeyPlace::item(std::size_t index, const Place& value_place) const {
 
 void Complaints::add(const KeyPlace& where, std::string_view message) {
   std::string text = where.place.describe();
-  if (!where.path.empty()) text += (text.empty() ? "" : ": ") + where.path;
+  if (!where.path.empty()) text += (text.empty() ? "" : ": ") + excerpt(where.path, 200);
   entries_.push_back({where.place.line, where.path, fmt::format("{}: {}", text, message)});
 }
 

@@ -7,6 +7,7 @@
 
 #include "io/case/case_file.h"
 #include "io/case/plane_section_keys.h"
+#include "io/excerpt.h"
 
 namespace isorim::io {
 namespace {
@@ -84,7 +85,7 @@ const Schema<PlaneSectionKeys>& schema<PlaneSectionKeys>() {
           .check([](const PlaneSectionKeys& keys, const KeyPlace& where, Complaints& complaints) {
             if (!is_plain(keys.name))
               complaints.add(where.key("name", where.place),
-                             fmt::format("found \"{}\"; expected letters, digits, _ and -", keys.name));
+                             fmt::format("found \"{}\"; expected letters, digits, _ and -", excerpt(keys.name)));
             check_coordinates(keys.normal, complaints);
             if (keys.point) check_coordinates(*keys.point, complaints);
             if (std::ranges::all_of(keys.normal.values, [](double x) { return x == 0.0; }))

@@ -27,7 +27,9 @@ std::string Range::describe() const {
 }
 
 void complain_type(Complaints& complaints, const KeyPlace& where, const Value& value, std::string_view expected) {
-  complaints.add(where, fmt::format("found {}; expected {}", describe(value), expected));
+  const bool lacks_brackets = expected == "a list of tables" && value.as<Value::Table>();
+  complaints.add(where, fmt::format("found {}; expected {}{}", describe(value), expected,
+                                    lacks_brackets ? fmt::format(", [[{}]]", where.path) : ""));
 }
 
 namespace {

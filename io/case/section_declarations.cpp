@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/case/case_file.h"
+#include "io/excerpt.h"
 #include "quadrature/gauss_legendre.h"
 
 /// The declarations of the sections of a case file.
@@ -72,7 +73,7 @@ const Schema<IntegralKeys>& schema<IntegralKeys>() {
             });
             if (integral.name.empty() || !is_plain) {
               complaints.add(where.key("name", where.place),
-                             fmt::format("found \"{}\"; expected letters, digits, _ and -", integral.name));
+                             fmt::format("found \"{}\"; expected letters, digits, _ and -", excerpt(integral.name)));
             }
             if (integral.integrand.empty()) {
               complaints.add(where.key("integrand", where.place), "found an empty expression");

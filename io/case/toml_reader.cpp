@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -8,6 +6,7 @@
 
 #include "geometry/errors.h"
 #include "io/case/value.h"
+#include "io/file_bytes.h"
 
 namespace isorim::io {
 namespace {
@@ -90,10 +89,7 @@ Value read_toml(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path, error)) {
     throw InputError(fmt::format("{}: is a folder; expected a case file (.toml)", path.string()));
   }
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file) throw InputError(fmt::format("{}: cannot be read", path.string()));
-  return parse_toml(text, path.string());
+  return parse_toml(read_bytes(path), path.string());
 }
 
 }  // namespace isorim::io

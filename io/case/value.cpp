@@ -11,6 +11,7 @@
 
 #include "geometry/errors.h"
 #include "io/case/value_edit.h"
+#include "io/excerpt.h"
 
 namespace isorim::io {
 
@@ -32,7 +33,7 @@ struct Describer {
   std::string operator()(bool value) const { return fmt::format("the boolean {}", value); }
   std::string operator()(std::int64_t value) const { return fmt::format("the integer {}", value); }
   std::string operator()(double value) const { return fmt::format("the real {}", value); }
-  std::string operator()(const std::string& value) const { return fmt::format("the text \"{}\"", value); }
+  std::string operator()(const std::string& value) const { return fmt::format("the text \"{}\"", excerpt(value)); }
   std::string operator()(const DateOrTime& value) const { return fmt::format("the date or time {}", value.text); }
   std::string operator()(const Value::Array& value) const { return fmt::format("a list of {}", value.size()); }
   std::string operator()(const Value::Table&) const { return "a table"; }

@@ -167,6 +167,8 @@ picture::PictureOptions options_of(const PictureArguments& arguments) {
 
 int draw_picture(const PictureArguments& arguments, std::ostream& out, std::ostream& err) {
   const picture::PictureOptions options = options_of(arguments);
+  picture::check_options(options, arguments.output);
+  io::require_writable_file(arguments.output);
   std::vector<Prepared> prepared;
   {
     ProgressLine progress(err);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/atomic_file.h"
 #include "io/cli/commands.h"
 #include "io/cli/interrupts.h"
 #include "io/results/case_files.h"
@@ -63,6 +64,7 @@ int run_case(const RunArguments& arguments, std::ostream& out, std::ostream& err
   const io::CaseFile file =
       io::read_case_or_cad(arguments.case_file, arguments.overrides, {.threads = arguments.threads});
   const std::filesystem::path folder = arguments.output.value_or(std::filesystem::path("out") / file.name());
+  io::require_writable_folder(folder);
   io::Report report;
   {
     ProgressLine progress(err);

@@ -29,12 +29,23 @@ fs::path verification_root(const VerifyArguments& arguments) {
   throw InputError("verify: found no folder cases/verification here; expected a folder with cases as the argument");
 }
 
+/// Sweep files stand among cases, as what they have in the place of a shape tells.
+bool is_sweep(const fs::path& file) {
+  try {
+    const io::Value root = io::read_toml(file);
+    return root.find("base") != nullptr && root.find("geometry") == nullptr;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 /// Every case file below a folder, sorted by path.
 std::vector<fs::path> case_files(const fs::path& root) {
   if (!fs::is_directory(root)) return {root};
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
-    if (entry.is_regular_file() && entry.path().extension() == ".toml") files.push_back(entry.path());
+    const bool is_toml = entry.is_regular_file() && entry.path().extension() == ".toml";
+    if (is_toml && !is_sweep(entry.path())) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   if (files.empty()) throw InputError(fmt::format("{}: found no case file (.toml)", root.string()));
@@ -85,10 +96,23 @@ int overall_exit_status(const std::vector<io::VerifiedCase>& cases) {
   return 0;
 }
 
+/// The table's file can be written, and is none that was meant as the argument before it.
+void require_table_file(const fs::path& file) {
+  if (file.extension() == ".toml") {
+    throw InputError(
+        fmt::format("--json {}: found a case file in the place of the table's; expected what is to be "
+                    "verified before --json",
+                    file.string()));
+  }
+  io::require_writable_file(file);
+}
+
 }  // namespace
 
 int verify_cases(const VerifyArguments& arguments, std::ostream& out, std::ostream& err) {
   const fs::path root = verification_root(arguments);
+  const bool is_printed = arguments.json && *arguments.json == "-";
+  if (arguments.json && !is_printed) require_table_file(*arguments.json);
   std::vector<io::VerifiedCase> cases;
   {
     ProgressLine progress(err);
@@ -98,7 +122,7 @@ int verify_cases(const VerifyArguments& arguments, std::ostream& out, std::ostre
       if (result) cases.push_back(std::move(*result));
     }
   }
-  const bool is_printed = arguments.json && *arguments.json == "-";
+  if (cases.empty()) throw InputError(fmt::format("{}: found no case with [expect]", root.string()));
   out << (is_printed ? io::verification_json(cases) : io::verification_text(cases));
   if (arguments.json && !is_printed) io::write_file(*arguments.json, io::verification_json(cases));
   return overall_exit_status(cases);

@@ -11,7 +11,6 @@
 #include <hdf5.h>
 
 #include "geometry/errors.h"
-#include "io/atomic_file.h"
 #include "io/case/complaints.h"
 #include "io/results/hdf5_parts.h"
 
@@ -79,33 +78,20 @@ void write_table(hid_t group, const OffsetTable& table) {
 }
 
 void write_library(const std::filesystem::path& path, const Hulls& hulls) {
-  AtomicFile target(path);
-  {
-    const Handle file(H5Fcreate(target.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
-                      "making the file");
+  write_new_file(path, [&](hid_t file) {
     write_text_attribute(file, "schema", schema_name);
     for (const auto& [name, table] : hulls) {
-      const Handle group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, name);
+      const Handle group = open_group(file, name);
       write_table(group, table);
     }
-    check(H5Fflush(file, H5F_SCOPE_GLOBAL), "writing the file");
-  }
-  target.commit();
+  });
 }
 
 // --- Reading --------------------------------------------------------------------------------------------------
 
-/// UTF-8 of variable length.
-hid_t make_text_type() {
-  const hid_t type = H5Tcopy(H5T_C_S1);
-  check(H5Tset_size(type, H5T_VARIABLE), "text type");
-  check(H5Tset_cset(type, H5T_CSET_UTF8), "text type");
-  return type;
-}
-
 std::string read_text(hid_t object, const char* name) {
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose, name);
-  const Handle type(make_text_type(), H5Tclose, "text type");
+  const Handle type = text_type();
   char* pointer = nullptr;
   check(H5Aread(attribute, type, static_cast<void*>(&pointer)), name);
   std::string text = pointer ? pointer : "";
@@ -152,7 +138,7 @@ std::vector<int> read_columns(hid_t group, const char* name) {
 std::vector<std::string> read_texts(hid_t group, const char* name) {
   const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, name);
   const Handle space(H5Dget_space(set), H5Sclose, name);
-  const Handle type(make_text_type(), H5Tclose, "text type");
+  const Handle type = text_type();
   const hssize_t count = H5Sget_simple_extent_npoints(space);
   std::vector<char*> pointers(static_cast<std::size_t>(std::max<hssize_t>(count, 0)), nullptr);
   std::vector<std::string> texts;

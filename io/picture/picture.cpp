@@ -113,7 +113,9 @@ std::array<double, 2> value_range(const std::vector<Drawable>& drawables, const 
   return range;
 }
 
-void check(const PictureOptions& options, const std::filesystem::path& output) {
+}  // namespace
+
+void check_options(const PictureOptions& options, const std::filesystem::path& output) {
   if (output.extension() != ".png") {
     throw InputError(fmt::format("cannot write '{}': found the extension \"{}\", expected .png", output.string(),
                                  output.extension().string()));
@@ -131,11 +133,9 @@ void check(const PictureOptions& options, const std::filesystem::path& output) {
   }
 }
 
-}  // namespace
-
 void draw_picture(const std::vector<PictureInput>& files, const PictureOptions& options,
                   const std::filesystem::path& output) {
-  check(options, output);
+  check_options(options, output);
   std::vector<Input> inputs = read_inputs(files);
   if (options.field) find_fields(inputs, *options.field);
   // The drawing's diagonal is at most that of the picture.

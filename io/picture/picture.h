@@ -82,6 +82,9 @@ struct PictureInput {
 void draw_picture(const std::vector<PictureInput>& inputs, const PictureOptions& options,
                   const std::filesystem::path& output);
 
+/// Throws InputError for options, or the name of a picture, that draw_picture() would refuse whatever it draws.
+void check_options(const PictureOptions& options, const std::filesystem::path& output);
+
 /// Whether a file has a field of the name. Errors as above.
 bool has_field(const std::filesystem::path& file, const std::string& name);
 

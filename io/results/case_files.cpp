@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "io/analysis/solution_pictures.h"
@@ -48,6 +49,9 @@ void write_case_files(const std::filesystem::path& folder, const CaseFile& file,
                       const Convergence& study, Report& report) {
   const Clock::time_point start = Clock::now();
   make_folder(folder);
+  // Of an earlier run: it would stand for files that change from here on.
+  std::error_code none;
+  std::filesystem::remove(folder / "results.json", none);
   const OutputKeys& output = file.keys.output;
   write_boundary_pictures(folder, file, model, report.title);
   if (output.vtk && report.fields) write_fields(folder, model, report);

@@ -9,9 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/errors.h"
 #include "io/analysis/analysis.h"
-#include "io/atomic_file.h"
 #include "io/hydrostatics/added_mass_report.h"
 #include "io/hydrostatics/hydrostatics_report.h"
 #include "io/results/hdf5_parts.h"
@@ -317,18 +315,7 @@ void write_report(hid_t file, const Report& report, const AnyModel& model) {
 }  // namespace
 
 void write_hdf5(const std::filesystem::path& path, const Report& report, const AnyModel& model) {
-  AtomicFile target(path);
-  const SilentErrors silence;
-  try {
-    const Handle file(H5Fcreate(target.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
-                      "making the file");
-    write_report(file, report, model);
-    check(H5Fflush(file, H5F_SCOPE_GLOBAL), "writing the file");
-  } catch (InputError& error) {
-    error.add_context(path.string());
-    throw;
-  }
-  target.commit();
+  write_new_file(path, [&](hid_t file) { write_report(file, report, model); });
 }
 
 }  // namespace isorim::io

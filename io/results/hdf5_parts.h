@@ -1,23 +1,26 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <fmt/format.h>
 #include <hdf5.h>
-
-#include "geometry/errors.h"
 
 /// The few calls of the HDF5 library that our writers make; for .cpp files. Failures are InputError "HDF5 failed: ...".
 namespace isorim::io::hdf5 {
+
+/// Throws InputError with `what` and the reason that the system gave to the library, if there is one, for a negative
+/// status.
+void check(herr_t status, std::string_view what);
 
 /// A handle of the library, closed at the end of its scope. Throws when the library gives none.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t), std::string_view what) : id_(id), close_(close) {
-    if (id_ < 0) throw InputError(fmt::format("HDF5 failed: {}", what));
+    check(id_ < 0 ? -1 : 0, what);
   }
   ~Handle() { close_(id_); }
   Handle(const Handle&) = delete;
@@ -45,7 +48,16 @@ class SilentErrors {
   void* data_ = nullptr;
 };
 
-void check(herr_t status, std::string_view what);
+/// Largest file that is made in memory first.
+inline constexpr std::uintmax_t largest_image = std::uintmax_t{1} << 28;
+
+/// Makes the file `path`, which `write` fills; it appears whole or not at all. Throws InputError with the path if
+/// anything fails, on a full disk too; what stood there before is left then.
+///
+/// The file is made in memory unless `expected_size` (bytes) exceeds largest_image: the library cannot let go of a file
+/// on a disk that is full; it tries again as the process ends, and crashes.
+void write_new_file(const std::filesystem::path& path, const std::function<void(hid_t file)>& write,
+                    std::uintmax_t expected_size = 0);
 
 template <class T>
 hid_t native_type();
@@ -90,7 +102,10 @@ void write_attribute(hid_t object, const std::string& name, T value) {
   check(H5Awrite(attribute, native_type<T>(), &value), "writing attribute " + name);
 }
 
-/// UTF-8 of variable length.
+/// UTF-8 of variable length, zero-terminated.
+Handle text_type();
+
+/// As text_type().
 void write_text_attribute(hid_t object, const std::string& name, std::string_view text);
 
 /// A list of texts, or a single one if `texts` has one and the rank is 0.

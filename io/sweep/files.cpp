@@ -8,6 +8,7 @@
 #include "geometry/errors.h"
 #include "io/atomic_file.h"
 #include "io/results/hdf5_parts.h"
+#include "io/svg/markup.h"
 #include "io/svg/plot.h"
 #include "io/sweep/results.h"
 
@@ -106,6 +107,17 @@ void copy_case(hid_t group, const std::string& name, const std::filesystem::path
   check(H5Ocopy(source, "/", group, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), "copying " + path.string());
 }
 
+/// Of the results of all cases, bytes.
+std::uintmax_t size_of_cases(const SweepResults& results, const std::filesystem::path& folder) {
+  std::uintmax_t size = 0;
+  for (const auto& [index, record] : results.records) {
+    std::error_code missing;
+    const std::uintmax_t one = std::filesystem::file_size(folder / record.folder / "results.h5", missing);
+    if (!missing) size += one;
+  }
+  return size;
+}
+
 std::vector<std::string> copy_cases(hid_t file, const SweepResults& results, const std::filesystem::path& folder) {
   const Handle group = open_group(file, "cases");
   std::vector<std::string> messages;
@@ -121,22 +133,6 @@ std::vector<std::string> copy_cases(hid_t file, const SweepResults& results, con
 }
 
 // --- Collections ----------------------------------------------------------------------------------------------
-
-std::string xml_text(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else if (c == '"') {
-      result += "&quot;";
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
 
 /// A time a case: times have to increase.
 std::vector<double> case_times(const SweepResults& results) {
@@ -199,12 +195,8 @@ std::vector<svg::Series> plot_series(const SweepResults& results, const SweepPlo
 
 std::vector<std::string> write_sweep_hdf5(const std::filesystem::path& path, const SweepResults& results,
                                           const std::filesystem::path& folder) {
-  AtomicFile target(path);
-  const SilentErrors silence;
   std::vector<std::string> messages;
-  try {
-    const Handle file(H5Fcreate(target.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
-                      "making the file");
+  const auto write = [&](hid_t file) {
     write_text_attribute(file, "isorim", program_version());
     write_text_attribute(file, "sweep", results.plan->title());
     write_text_attribute(file, "shard", results.shard.text());
@@ -212,12 +204,8 @@ std::vector<std::string> write_sweep_hdf5(const std::filesystem::path& path, con
     write_texts(file, "base_case", {to_toml(results.plan->base)}, {});
     write_table(file, results);
     messages = copy_cases(file, results, folder);
-    check(H5Fflush(file, H5F_SCOPE_GLOBAL), "writing the file");
-  } catch (InputError& error) {
-    error.add_context(path.string());
-    throw;
-  }
-  target.commit();
+  };
+  write_new_file(path, write, size_of_cases(results, folder));
   return messages;
 }
 
@@ -229,7 +217,7 @@ void write_collections(const std::filesystem::path& folder, const SweepResults& 
       if (!name.ends_with(".vtu")) continue;
       entries[name.substr(0, name.size() - 4)] +=
           fmt::format("    <DataSet timestep=\"{}\" part=\"0\" name=\"{}\" file=\"{}/{}\"/>\n", times[index],
-                      xml_text(results.plan->describe(index)), xml_text(record.folder), xml_text(name));
+                      svg::escape(results.plan->describe(index)), svg::escape(record.folder), svg::escape(name));
     }
   }
   for (const auto& [name, text] : entries) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/excerpt.h"
 
 namespace isorim::io::tspline {
 namespace {
@@ -17,13 +18,9 @@ bool is_blank(char c) {
   return blanks.find(c) != std::string_view::npos;
 }
 
-/// As much of a word as a message has room for, without what a terminal would act on.
+/// As much of a word as a message has room for.
 std::string shown(std::string_view word) {
-  constexpr std::size_t most = 40;
-  std::string text(word.substr(0, most));
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c >= 0 && c < ' '; }, '?');
-  return word.size() > most ? text + "..." : text;
+  return excerpt(word, 40);
 }
 
 /// from_chars knows no plus sign.

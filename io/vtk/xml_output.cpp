@@ -1,5 +1,7 @@
 #include "io/vtk/xml_output.h"
 
+#include <cerrno>
+#include <cstring>
 #include <string>
 
 #include <fmt/format.h>
@@ -43,8 +45,10 @@ void write_xml(const std::filesystem::path& path, vtkXMLWriter* writer, vtkDataO
   writer->SetHeaderTypeToUInt64();
   const bool written = writer->Write() == 1 && writer->GetErrorCode() == vtkErrorCode::NoError && messages.empty();
   if (!written) {
+    const unsigned long code = writer->GetErrorCode();
+    const bool is_full = code == vtkErrorCode::OutOfDiskSpaceError;
     throw InputError(fmt::format("cannot write '{}': {}", path.string(),
-                                 vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode())));
+                                 is_full ? std::strerror(ENOSPC) : vtkErrorCode::GetStringFromErrorCode(code)));
   }
   file.commit();
 }

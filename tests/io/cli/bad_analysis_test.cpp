@@ -106,7 +106,7 @@ const std::vector<BadCase> conditions{
      {"found the patch \"roof\""}},
     {"KindOfElasticity",
      circle + laplace + condition("kind = 'displacement'"),
-     {"boundary_condition[1].kind: a potential has value, flux, robin and symmetry"}},
+     {"boundary_condition[1].kind: found \"displacement\"; a potential has value, flux, robin and symmetry"}},
     {"KindOfAPotential",
      circle + elastic + condition("kind = 'flux'"),
      {"elasticity has displacement, traction, foundation and symmetry"}},

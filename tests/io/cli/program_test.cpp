@@ -283,6 +283,49 @@ TEST_F(Program, VerifyOfNothingIsRefused) {
   const ProgramResult result = run({"verify", path("empty")});
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, HasSubstr("empty: found no case file"));
+  write("silent/a.toml", "[geometry]\ntype = 'circle'\nradius = 1\n");
+  const ProgramResult silent = run({"verify", path("silent")});
+  EXPECT_EQ(silent.status, 2);
+  EXPECT_THAT(silent.err, HasSubstr("silent: found no case with [expect]"));
+  EXPECT_EQ(silent.out, "");
+}
+
+TEST_F(Program, VerifyPassesOverSweeps) {
+  write("suite/a.toml", circle);
+  write("suite/sweep.toml", "base = 'a.toml'\n[[parameter]]\nkey = 'geometry.radius'\nvalues = [1]\n");
+  const ProgramResult result = run({"verify", path("suite")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("1 of 1 expectations met in 1 cases"));
+}
+
+TEST_F(Program, VerifyDoesNotOverwriteACaseWithItsTable) {
+  const std::string file = write("a.toml", circle);
+  const ProgramResult result = run({"verify", "--json", file, path("suite")});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(read_file(file), circle);
+  write("suite/a.toml", circle);
+  const ProgramResult swapped = run({"verify", path("suite"), "--json", file});
+  EXPECT_EQ(swapped.status, 2);
+  EXPECT_THAT(swapped.err, HasSubstr("found a case file in the place of the table's"));
+  EXPECT_EQ(read_file(file), circle);
+  EXPECT_THAT(run({"verify", path("suite"), "--json", path("suite")}).err, HasSubstr("suite': it is a folder"));
+}
+
+TEST_F(Program, OutputThatCannotBeWrittenIsRefusedBeforeComputing) {
+  write("file", "");
+  // What would be found out while computing.
+  const std::string late = "[geometry]\ntype = 'circle'\nradius = 1\n[[integral]]\nname = 'i'\nintegrand = 'log(x)'\n";
+  const auto refused = [&](const std::string& output) {
+    const ProgramResult result = run({"run", write("case.toml", late), "-o", output});
+    EXPECT_EQ(result.status, 2);
+    return result.err;
+  };
+  EXPECT_THAT(refused(path("file/deeper")), HasSubstr("file' is a file"));
+  EXPECT_THAT(refused(""), HasSubstr("the name of the output folder is empty"));
+  if (geteuid() == 0) return;
+  fs::create_directories(folder() / "locked");
+  fs::permissions(folder() / "locked", fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_THAT(refused(path("locked/out")), HasSubstr("locked': Permission denied"));
 }
 
 TEST_F(Program, UnknownCommandsAreStatus2WithTheNearest) {
