@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -15,6 +16,7 @@
 #include "io/analysis/analysis.h"
 #include "io/analysis/boundary_field.h"
 #include "io/analysis/solution_pictures.h"
+#include "io/atomic_file.h"
 #include "io/python/values.h"
 #include "io/results/case_files.h"
 #include "io/results/conversion.h"
@@ -39,7 +41,30 @@ std::vector<std::string> Case::patches() const {
   return names;
 }
 
+void check_threads(int threads) {
+  if (threads < 0 || threads > 4096) {
+    throw InputError(fmt::format("threads: found {}; expected a number from 0 (all) to 4096", threads));
+  }
+}
+
+void check_tolerance(double tolerance, const char* name) {
+  if (!(tolerance > 0.0 && tolerance <= 0.1)) {
+    throw InputError(fmt::format("{}: found {}; expected a number > 0 and <= 0.1", name, tolerance));
+  }
+}
+
+void check_pole(const std::optional<std::vector<double>>& pole, int dimension) {
+  if (!pole) return;
+  if (static_cast<int>(pole->size()) != dimension) {
+    throw InputError(fmt::format("pole: found {} coordinates; expected {}", pole->size(), dimension));
+  }
+  for (const double x : *pole) {
+    if (!std::isfinite(x)) throw InputError(fmt::format("pole: found {}; expected finite coordinates", x));
+  }
+}
+
 io::RunOptions run_options(int threads) {
+  check_threads(threads);
   return {threads, [](std::string_view /*stage*/, double /*fraction*/) {
             const py::gil_scoped_acquire lock;
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -54,11 +79,13 @@ void override_all(io::Value& root, const std::vector<std::string>& overrides) {
 
 std::unique_ptr<Case> from_file(const std::filesystem::path& path, const std::vector<std::string>& overrides,
                                 int threads) {
+  check_threads(threads);
   return std::make_unique<Case>(io::read_case_or_cad(path, overrides, {.threads = threads}));
 }
 
 std::unique_ptr<Case> from_tree(io::Value root, const std::filesystem::path& folder,
                                 const std::vector<std::string>& overrides, int threads) {
+  check_threads(threads);
   override_all(root, overrides);
   return std::make_unique<Case>(io::read_case(root, folder / "case.toml", {.threads = threads}));
 }
@@ -77,8 +104,12 @@ std::unique_ptr<Case> from_toml(const std::string& text, const std::filesystem::
 
 /// Everything that the case asks for, as the text of results.json; its files go into a folder if there is one.
 std::string run(Case& self, int threads, const std::optional<std::filesystem::path>& output) {
+  if (output) io::require_writable_folder(*output);
   io::Report report = io::compute(self.file, self.model, run_options(threads));
-  self.analysis = report.fields;
+  {
+    const py::gil_scoped_acquire lock;
+    self.analysis = report.fields;
+  }
   if (output) {
     const io::Convergence study = io::study_convergence(self.file, self.model, run_options(threads));
     io::write_case_files(*output, self.file, self.model, study, report);
@@ -86,21 +117,30 @@ std::string run(Case& self, int threads, const std::optional<std::filesystem::pa
   return io::to_json(report);
 }
 
+/// The case without what its shape need not have: integrals, sections, water, an analysis.
+io::CaseFile with_properties_alone(io::CaseFile file) {
+  io::CaseKeys& keys = file.keys;
+  keys.integral.clear();
+  keys.section.clear();
+  keys.expect.quantities.clear();
+  keys.hydrostatics.reset();
+  keys.added_mass.reset();
+  keys.analysis.reset();
+  return file;
+}
+
 /// The properties alone.
 std::string properties(const Case& self, double tolerance, std::optional<double> density,
                        const std::optional<std::vector<double>>& pole, int threads) {
-  io::CaseFile file = self.file;
-  file.keys.integral.clear();
-  file.keys.section.clear();
-  file.keys.expect.quantities.clear();
-  file.keys.analysis.reset();
+  check_tolerance(tolerance);
+  check_pole(pole, self.dimension());
+  if (density && !(std::isfinite(*density) && *density > 0.0)) {
+    throw InputError(fmt::format("density: found {}; expected a number > 0", *density));
+  }
+  io::CaseFile file = with_properties_alone(self.file);
   file.keys.properties.tolerance = tolerance;
   if (density) file.keys.properties.density = density;
   if (pole) {
-    if (static_cast<int>(pole->size()) != self.dimension()) {
-      throw InputError("pole: found " + std::to_string(pole->size()) + " coordinates; expected " +
-                       std::to_string(self.dimension()));
-    }
     file.keys.properties.pole.emplace();
     file.keys.properties.pole->values = *pole;
   }
@@ -115,18 +155,22 @@ void write_boundary(const Case& self, const std::filesystem::path& path, const s
   io::write_boundary(path, self.file, self.model, {.unit = unit});
 }
 
-const io::AnyAnalysis& solved(const Case& self) {
+/// The solution, kept for as long as the caller needs it, whatever other threads do with the case.
+std::shared_ptr<const io::AnyAnalysis> solved(const Case& self) {
+  const py::gil_scoped_acquire lock;
   if (!self.analysis) throw InputError("there is no solution: the case is no analysis, or has not been run");
-  return *self.analysis;
+  return self.analysis;
 }
 
 void write_solution(const Case& self, const std::filesystem::path& path) {
-  io::write_solution_vtu(path, self.model, solved(self));
+  io::write_solution_vtu(path, self.model, *solved(self));
 }
 
 /// The solution at points, n x dim: locations, values (n x components), gradients (n x components x dim); NaN outside.
 py::tuple evaluate(const Case& self, const py::array_t<double, py::array::c_style | py::array::forcecast>& points,
                    int threads) {
+  check_threads(threads);
+  const std::shared_ptr<const io::AnyAnalysis> analysis = solved(self);
   return std::visit(
       [&]<int Dim>(const io::Analysis<Dim>& known) {
         if (points.ndim() != 2 || points.shape(1) != Dim) {
@@ -159,7 +203,7 @@ py::tuple evaluate(const Case& self, const py::array_t<double, py::array::c_styl
         }
         return py::make_tuple(locations, values, gradients);
       },
-      solved(self).known);
+      analysis->known);
 }
 
 /// A row for each node.
@@ -216,7 +260,8 @@ py::tuple boundary_fields_of(const io::Analysis<Dim>& known) {
 }
 
 py::tuple boundary_fields(const Case& self) {
-  return std::visit([](const auto& known) { return boundary_fields_of(known); }, solved(self).known);
+  const std::shared_ptr<const io::AnyAnalysis> analysis = solved(self);
+  return std::visit([](const auto& known) { return boundary_fields_of(known); }, analysis->known);
 }
 
 }  // namespace

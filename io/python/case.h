@@ -25,8 +25,14 @@ struct Case {
   std::vector<std::string> patches() const;
 };
 
-/// Progress that lets Ctrl-C through: raises what Python's signal handlers raise. For work without the GIL.
+/// Progress that lets Ctrl-C through: raises what Python's signal handlers raise. For work without the GIL. Throws
+/// InputError for a number of threads that is none.
 io::RunOptions run_options(int threads);
+
+/// What callers ask for, held to what case files may say. Throw InputError.
+void check_threads(int threads);
+void check_tolerance(double tolerance, const char* name = "tolerance");
+void check_pole(const std::optional<std::vector<double>>& pole, int dimension);
 
 void declare_case(pybind11::module_& module);
 void declare_integrals(pybind11::module_& module);

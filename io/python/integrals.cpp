@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -26,6 +28,17 @@ Array rows_of(const Eigen::Ref<const geometry::Points<Dim>>& points) {
   return rows;
 }
 
+/// What a callable has returned. Throws TypeError for what is no number, or complex.
+Array numbers_in(const py::object& result) {
+  const py::array found = py::array::ensure(result);
+  if (!found) throw py::type_error("the integrand gave what makes no array; expected one number a point");
+  if (std::string_view("biuf").find(found.dtype().kind()) == std::string_view::npos) {
+    throw py::type_error(fmt::format("the integrand gave values of the type {}; expected real numbers",
+                                     py::str(found.dtype()).cast<std::string>()));
+  }
+  return Array(found);
+}
+
 /// A Python callable of (points) or (points, normals), which gives one value a point. Needs the GIL.
 template <int Dim>
 quadrature::IntegrandFactory<Dim> integrand_of(const py::function& function, bool has_normals) {
@@ -34,34 +47,19 @@ quadrature::IntegrandFactory<Dim> integrand_of(const py::function& function, boo
                                    const Eigen::Ref<const geometry::Points<Dim>>& normals, std::span<double> values) {
       const py::object result =
           has_normals ? function(rows_of<Dim>(points), rows_of<Dim>(normals)) : function(rows_of<Dim>(points));
-      const Array found = Array::ensure(result);
-      if (!found) throw py::error_already_set();
+      const Array found = numbers_in(result);
       if (found.ndim() == 0) {
         std::fill(values.begin(), values.end(), *found.data());
       } else if (found.ndim() == 1 && found.shape(0) == points.cols()) {
         std::copy(found.data(), found.data() + found.size(), values.begin());
       } else {
-        throw InputError("the integrand gave an array of " + std::to_string(found.size()) + " values for " +
-                         std::to_string(points.cols()) + " points; expected one a point");
+        const std::vector<py::ssize_t> shape(found.shape(), found.shape() + found.ndim());
+        throw InputError(
+            fmt::format("the integrand gave an array of the shape ({}) for {} points; expected one a point",
+                        fmt::join(shape, ", "), points.cols()));
       }
     };
   };
-}
-
-const char* name_of(quadrature::Status status) {
-  switch (status) {
-    case quadrature::Status::exact:
-      return "exact";
-    case quadrature::Status::converged:
-      return "converged";
-    case quadrature::Status::limited_by_rounding:
-      return "limited_by_rounding";
-    case quadrature::Status::fixed_rule:
-      return "fixed_rule";
-    case quadrature::Status::tolerance_not_reached:
-      return "tolerance_not_reached";
-  }
-  return "";
 }
 
 template <int Dim>
@@ -74,15 +72,15 @@ quadrature::IntegralResult integrate_over(const io::Model<Dim>& model, bool over
     throw InputError("the boundary is open: it has integrals over itself, but none over a domain");
   }
   std::optional<geometry::Point<Dim>> at;
-  if (pole) {
-    if (pole->size() != Dim) throw InputError("pole: expected " + std::to_string(Dim) + " coordinates");
-    at = Eigen::Map<const geometry::Point<Dim>>(pole->data());
-  }
+  if (pole) at = Eigen::Map<const geometry::Point<Dim>>(pole->data());
   return quadrature::integrate_over_domain<Dim>(model.table, integrand, at, options);
 }
 
 py::tuple integrate(const Case& self, const py::object& integrand, bool over_boundary, double tolerance,
                     const std::optional<std::vector<double>>& pole, int threads) {
+  check_tolerance(tolerance);
+  check_threads(threads);
+  check_pole(pole, self.dimension());
   const quadrature::IntegralResult result = std::visit(
       [&]<int Dim>(const io::Model<Dim>& model) {
         quadrature::Options options;
@@ -102,7 +100,8 @@ py::tuple integrate(const Case& self, const py::object& integrand, bool over_bou
         return integrate_over<Dim>(model, over_boundary, expression, pole, options);
       },
       self.model);
-  return py::make_tuple(result.integral.value, result.integral.error, result.evaluations, name_of(result.status));
+  return py::make_tuple(result.integral.value, result.integral.error, result.evaluations,
+                        io::status_name(result.status));
 }
 
 }  // namespace

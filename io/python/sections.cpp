@@ -57,6 +57,7 @@ py::list sections(const Case& self, const std::vector<double>& normal, const std
                   const std::vector<double>& point, double fit_tolerance, int threads) {
   const auto* solid = std::get_if<io::Model<3>>(&self.model);
   if (solid == nullptr) throw InputError("the shape is a region of the plane; expected a solid to cut");
+  check_tolerance(fit_tolerance, "fit_tolerance");
   const geometry::Vector3 direction = three(normal, "normal");
   const geometry::Point3 origin = three(point, "point");
   std::vector<geometry::PlaneFrame> planes;

@@ -148,6 +148,21 @@ class Fit:
     tolerance_met: bool
 
 
+def _reals(values: Any, name: str) -> np.ndarray:
+    """An array of floats; complex numbers and what is no number are a TypeError."""
+    array = np.asarray(values)
+    if array.size and array.dtype.kind not in "biuf":
+        raise TypeError(f"{name}: found values of the type {array.dtype}; expected real numbers")
+    return array.astype(float, copy=False)
+
+
+def _coordinates(values: Any, name: str) -> list[float]:
+    array = _reals(values, name)
+    if array.ndim != 1:
+        raise InputError(f"{name}: found an array of the shape {array.shape}; expected a list of numbers")
+    return array.tolist()
+
+
 def _arrays(tree: Any) -> Any:
     """Lists of numbers (None: not finite) become arrays, all the way down."""
     if isinstance(tree, dict):
@@ -236,7 +251,8 @@ class Boundary:
             "perimeter" and "area" in the plane, "area" and "volume" in space, "centroid", "inertia",
             "principal_moments", ...
         """
-        text = self._case.properties(tolerance, density, None if pole is None else [float(x) for x in pole], threads)
+        at = None if pole is None else _coordinates(pole, "pole")
+        text = self._case.properties(tolerance, density, at, threads)
         return {name: _quantity(entry) for name, entry in _arrays(json.loads(text))["properties"].items()}
 
     def integrate(self, integrand: Any, *, over: str = "domain", tolerance: float = 1e-12, pole: Any = None,
@@ -260,7 +276,7 @@ class Boundary:
             raise InputError(f"over: found {over!r}; expected 'domain' or 'boundary'")
         if not isinstance(integrand, str) and not callable(integrand):
             raise TypeError(f"integrand: found {type(integrand).__name__}; expected a text or a callable")
-        at = None if pole is None else [float(x) for x in pole]
+        at = None if pole is None else _coordinates(pole, "pole")
         return Integral(*_isorim.integrate(self._case, integrand, over == "boundary", tolerance, at, threads))
 
     def sections(self, normal: Any, offsets: Any = (0.0,), *, point: Any = (0.0, 0.0, 0.0),
@@ -283,8 +299,8 @@ class Boundary:
             "centroid" (None without loops), "loops" and "chains": curves in space as `nurbs_curve` gives them, with
             "length" and "error"; None for one that could not be fitted.
         """
-        distances = [float(x) for x in np.atleast_1d(np.asarray(offsets, dtype=float))]
-        return _isorim.sections(self._case, [float(x) for x in normal], distances, [float(x) for x in point],
+        distances = _coordinates(np.atleast_1d(_reals(offsets, "offsets")), "offsets")
+        return _isorim.sections(self._case, _coordinates(normal, "normal"), distances, _coordinates(point, "point"),
                                 fit_tolerance, threads)
 
     def run(self, *, output: str | os.PathLike[str] | None = None, threads: int = 0) -> dict[str, Any]:
@@ -307,7 +323,7 @@ class Boundary:
 
     def evaluate(self, points: Any, *, threads: int = 0) -> Evaluation:
         """The solution of an analysis, after `run`, at points of shape (n, dimension)."""
-        return Evaluation(*_isorim.Case.evaluate(self._case, np.asarray(points, dtype=float), threads))
+        return Evaluation(*self._case.evaluate(_reals(points, "points"), threads))
 
     def write(self, path: str | os.PathLike[str], *, unit: str | None = None) -> None:
         """Writes the boundary as ``isorim convert`` does.
@@ -336,19 +352,20 @@ def load(source: Any, *, overrides: Any = (), folder: str | os.PathLike[str] = "
         A case (.toml) or CAD file; the text of a case (it has a line break); or a dictionary with its keys. Numpy
         arrays stand for lists, entries that are None are left out. A dictionary without "geometry" but with "type" is
         the geometry.
-    overrides : sequence of str
+    overrides : sequence of str, or a single one
         "key.path=value", as ``--set`` takes them.
     folder : path
         Where relative paths in texts and dictionaries begin.
     threads : int
         0: all.
     """
+    changes = [overrides] if isinstance(overrides, str) else list(overrides)
     if isinstance(source, dict):
         tree = {"geometry": source} if "geometry" not in source and "type" in source else source
-        return Boundary(_isorim.Case.from_dict(tree, os.fspath(folder), list(overrides), threads))
+        return Boundary(_isorim.Case.from_dict(tree, os.fspath(folder), changes, threads))
     if isinstance(source, str) and "\n" in source:
-        return Boundary(_isorim.Case.from_toml(source, os.fspath(folder), list(overrides), threads))
-    return Boundary(_isorim.Case.from_file(os.fspath(source), list(overrides), threads))
+        return Boundary(_isorim.Case.from_toml(source, os.fspath(folder), changes, threads))
+    return Boundary(_isorim.Case.from_file(os.fspath(source), changes, threads))
 
 
 def run(source: Any, *, overrides: Any = (), folder: str | os.PathLike[str] = ".",
@@ -370,9 +387,9 @@ def nurbs_curve(degree: int, knots: Any, points: Any, weights: Any = None, **key
     **keys
         Further keys, such as ``role="hole"`` or ``name="rim"``.
     """
-    return {"type": "nurbs", "degree": degree, "knots": np.asarray(knots, dtype=float),
-            "points": np.asarray(points, dtype=float),
-            "weights": None if weights is None else np.asarray(weights, dtype=float), **keys}
+    return {"type": "nurbs", "degree": degree, "knots": _reals(knots, "knots"),
+            "points": _reals(points, "points"),
+            "weights": None if weights is None else _reals(weights, "weights"), **keys}
 
 
 def nurbs_surface(degree: Any, knots: Any, points: Any, weights: Any = None, **keys: Any) -> dict[str, Any]:
@@ -390,9 +407,9 @@ def nurbs_surface(degree: Any, knots: Any, points: Any, weights: Any = None, **k
     **keys
         Further keys, such as ``name="deck"``.
     """
-    weight_rows = None if weights is None else np.asarray(weights, dtype=float)
-    return {"type": "nurbs", "degrees": [int(p) for p in degree], "knots_u": np.asarray(knots[0], dtype=float),
-            "knots_v": np.asarray(knots[1], dtype=float), "points": np.asarray(points, dtype=float),
+    weight_rows = None if weights is None else _reals(weights, "weights")
+    return {"type": "nurbs", "degrees": [int(p) for p in degree], "knots_u": _reals(knots[0], "knots"),
+            "knots_v": _reals(knots[1], "knots"), "points": _reals(points, "points"),
             "weights": weight_rows, **keys}
 
 
@@ -413,6 +430,6 @@ def fit(points: Any, *, closed: bool = True, degree: int = 3, control_points: in
     corner_angle : float
         Degrees; points at which the polygon turns by more become corners. 0: none.
     """
-    found = _isorim.fit(np.asarray(points, dtype=float), closed, degree, control_points, tolerance, corner_angle)
+    found = _isorim.fit(_reals(points, "points"), closed, degree, control_points, tolerance, corner_angle)
     curve = {key: found[key] for key in ("type", "degree", "knots", "points", "weights")}
     return Fit(curve, found["parameters"], found["distances"], found["tolerance_met"])

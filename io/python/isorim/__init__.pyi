@@ -1,5 +1,5 @@
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -96,10 +96,10 @@ class Boundary:
     def write_solution(self, path: _Path) -> None: ...
 
 def load(
-    source: _Path | Mapping[str, Any], *, overrides: Sequence[str] = ..., folder: _Path = ..., threads: int = ...
+    source: _Path | dict[str, Any], *, overrides: Sequence[str] = ..., folder: _Path = ..., threads: int = ...
 ) -> Boundary: ...
 def run(
-    source: _Path | Mapping[str, Any],
+    source: _Path | dict[str, Any],
     *,
     overrides: Sequence[str] = ...,
     folder: _Path = ...,

@@ -268,6 +268,68 @@ class Errors(unittest.TestCase):
         with self.assertRaises(TypeError):
             ball.integrate(3)
 
+    def test_integrands_give_real_numbers(self):
+        ball = isorim.load(BALL)
+        for wrong in (lambda x: "abc", lambda x: None, lambda x: x[:, 0] + 1j, lambda x: [object()] * len(x),
+                      lambda x: [[1], [1, 2]]):
+            with self.assertRaisesRegex(TypeError, "the integrand gave"):
+                ball.integrate(wrong)
+        with self.assertRaisesRegex(isorim.InputError, r"shape \(\d+, 1\) for"):
+            ball.integrate(lambda x: x[:, :1])
+        for dtype in (np.int8, np.uint64, np.float32, bool):
+            found = ball.integrate(lambda x, dtype=dtype: np.ones(2 * len(x), dtype)[::2])
+            self.assertAlmostEqual(found.value, 4 / 3 * PI, delta=1e-11)
+
+    def test_arrays_of_other_numbers_than_reals_are_type_errors(self):
+        ball = isorim.load(BALL)
+        disc = isorim.load(DISC)
+        disc.run()
+        for wrong in (lambda: disc.evaluate([[1j, 0]]), lambda: isorim.fit(np.ones((9, 2), complex)),
+                      lambda: ball.sections("abc"), lambda: isorim.nurbs_curve(1, [0, 0, 1, 1], [["a", "b"]]),
+                      lambda: ball.integrate("x", pole=[None, 0, 0])):
+            with self.assertRaisesRegex(TypeError, "expected real numbers"):
+                wrong()
+        points = np.asfortranarray(np.array([[0.5, 0.25, 9], [0.1, 0.2, 9]]))[::-1, :2]
+        self.assertTrue(np.allclose(disc.evaluate(points).value, disc.evaluate(points.copy()).value, rtol=0, atol=0))
+
+    def test_numbers_out_of_range_are_told(self):
+        ball = isorim.load(BALL)
+        nan, inf = math.nan, math.inf
+        for text, wrong in (("tolerance: found nan", lambda: ball.properties(tolerance=nan)),
+                            ("tolerance: found -1", lambda: ball.integrate("x", tolerance=-1)),
+                            ("tolerance: found 0", lambda: ball.integrate("x", tolerance=0)),
+                            ("fit_tolerance: found -1", lambda: ball.sections([0, 0, 1], fit_tolerance=-1)),
+                            ("density: found -1", lambda: ball.properties(density=-1)),
+                            ("pole: found nan", lambda: ball.properties(pole=[0, nan, 0])),
+                            ("pole: found inf", lambda: ball.integrate("x", pole=[0, inf, 0])),
+                            ("pole: found 2 coordinates", lambda: ball.properties(pole=[0, 0])),
+                            ("threads: found -1", lambda: ball.properties(threads=-1)),
+                            ("threads: found -1", lambda: ball.integrate("x", threads=-1)),
+                            ("threads: found 5000", lambda: isorim.load(BALL, threads=5000)),
+                            ("radius: found the integer 1000", lambda: isorim.load({**BALL, "radius": 10**30}))):
+            with self.assertRaisesRegex(isorim.InputError, text):
+                wrong()
+
+    def test_lists_that_hold_themselves_are_refused(self):
+        endless = []
+        endless.append(endless)
+        with self.assertRaisesRegex(isorim.InputError, "more than 256 levels"):
+            isorim.load({**BALL, "centre": endless})
+
+    def test_a_single_override_needs_no_list(self):
+        for overrides in ("geometry.radius=2", ["geometry.radius=2"]):
+            found = isorim.load(BALL, overrides=overrides).properties()["area"].value
+            self.assertAlmostEqual(found, 16 * PI, delta=1e-11)
+
+    def test_properties_compute_nothing_else(self):
+        raft = {"geometry": {"type": "box", "size": [4, 2, 1]}, "hydrostatics": {"draught": 0.5}}
+        self.assertIn("hydrostatics", isorim.load(raft).run())
+        case = isorim.load({**raft, "added_mass": {}})._case
+        alone = json.loads(case.properties(1e-12, None, None, 0))
+        self.assertNotIn("hydrostatics", alone)
+        self.assertNotIn("added_mass", alone)
+        self.assertAlmostEqual(alone["properties"]["volume"]["value"], 8, delta=1e-12)
+
     def test_ctrl_c_ends_integrals(self):
         timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
         timer.start()
