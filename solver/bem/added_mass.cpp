@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <utility>
@@ -103,6 +104,18 @@ RawAddedMass solve_motions(const OrientedBoundary<3>& boundary, const AddedMassO
   return result;
 }
 
+/// The shells that the fluid meets: without voids, and what lies in them.
+OrientedBoundary<3> outer_shells(const OrientedBoundary<3>& boundary) {
+  const auto& shells = boundary.topology.shells;
+  if (std::ranges::none_of(shells, [](const geometry::Shell<3>& shell) { return shell.is_void; })) return boundary;
+  Boundary<3> rest;
+  for (const geometry::Shell<3>& shell : shells)
+    for (const int patch : shell.patches)
+      if (!shell.is_void) rest.patches.push_back(boundary.boundary.patches[static_cast<std::size_t>(patch)]);
+  // A body in a void is now one in a body, which orient() takes for a void.
+  return outer_shells(geometry::orient(rest));
+}
+
 /// Steiner: from the inertia about the centroid to that about the centre.
 void set_displaced(const OrientedBoundary<3>& boundary, const AddedMassOptions& options, AddedMass& result) {
   PropertyOptions<3> property_options;
@@ -146,9 +159,10 @@ Eigen::Matrix<double, 6, 1> AddedMass::coefficients() const {
   return result;
 }
 
-AddedMass added_mass(const OrientedBoundary<3>& boundary, const AddedMassOptions& options) {
+AddedMass added_mass(const OrientedBoundary<3>& solid, const AddedMassOptions& options) {
   if (options.refine < 1)
     throw InputError(fmt::format("found {} bisections for added masses; expected 1 or more", options.refine));
+  const OrientedBoundary<3> boundary = outer_shells(solid);
   const RawAddedMass fine = solve_motions(boundary, options);
   AddedMassOptions less = options;
   --less.refine;

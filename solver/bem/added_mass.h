@@ -56,8 +56,8 @@ struct AddedMass {
 /// In an unbounded fluid without circulation: potentials phi_k that vanish far away with dphi_k / dn = n_k, and
 /// ((x - centre) x n)_k for turning, give M_jk = - int phi_j dphi_k / dn dS (Lamb, Hydrodynamics, articles 118 to 121).
 /// By boundary elements, assembled and factored once for the six motions, and once more for the error estimate; the
-/// boundary is closed (orient()). Errors as those of field_space(), graded_to_edges() and solve(), and InputError for
-/// no bisection.
-AddedMass added_mass(const geometry::OrientedBoundary<3>& boundary, const AddedMassOptions& options);
+/// boundary is closed (orient()). Voids in the solid are sealed: the fluid does not know them, and they displace it as
+/// the solid does. Errors as those of field_space(), graded_to_edges() and solve(), and InputError for no bisection.
+AddedMass added_mass(const geometry::OrientedBoundary<3>& solid, const AddedMassOptions& options);
 
 }  // namespace isorim::solver

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -56,6 +58,20 @@ TEST(AddedMass, AboutAnotherPointMovesLikeAnInertia) {
   EXPECT_NEAR(found.matrix(2, 4), -0.5 * m, 1e-9 * m);
   EXPECT_NEAR(found.matrix(3, 3), 0.0, 1e-9 * m);
   EXPECT_NEAR(found.inertia(1, 1), 4.0 / 3.0 * pi * (0.4 + 0.25), 1e-10);
+}
+
+TEST(AddedMass, KnowsNothingOfVoids) {
+  geometry::Boundary<3> hollow;
+  for (const double radius : {2.0, 1.0, 0.5})
+    for (geometry::Patch<3> patch : geometry::sphere(radius).patches) {
+      patch.name += std::to_string(radius);
+      hollow.patches.push_back(std::move(patch));
+    }
+  const AddedMass whole = added_mass(geometry::orient(geometry::sphere(2.0)), options_of(2, 1));
+  const AddedMass found = added_mass(geometry::orient(hollow), options_of(2, 1));
+  EXPECT_EQ(found.matrix, whole.matrix);
+  EXPECT_EQ(found.volume, whole.volume);
+  EXPECT_NEAR(found.matrix(0, 0), 16.0 / 3.0 * pi, 1e-9);
 }
 
 TEST(AddedMass, RefusesADiscretisationThatCannotBeEstimated) {
