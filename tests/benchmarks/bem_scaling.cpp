@@ -6,11 +6,11 @@
 // Degree 2 and tolerance 1e-6 in the series sphere, sphere_large, torus, cube and elasticity, with a source outside;
 // degrees 1 to 8 in `degrees`; Bembel's problems over degree and refinement, with its own patches and tolerance 1e-12,
 // in peer_sphere, peer_torus and peer_neumann; a sphere in several units of length in `units`. Every solve has a
-// process of its own, so that peak memory is that of the one solve. Writes DIR/bem_scaling.csv (one row a solve: CPU
+// process of its own, so that peak memory is that of the one solve. Keeps DIR/bem_scaling.csv, one row a solve (CPU
 // seconds and peak memory of the whole process with its evaluation inside, the largest error there relative to the
-// largest value) and pictures of time and memory against unknowns if the sphere's series is among what is run. Without
-// any SERIES all are, which takes half an hour of CPU time. OMP_NUM_THREADS=1 keeps CPU seconds free of threads that
-// wait.
+// largest value), of which it replaces what is measured anew; and draws time and memory against unknowns for the
+// sphere. Without any SERIES all are run, which takes half an hour of CPU time; `none` draws again what there is.
+// OMP_NUM_THREADS=1 keeps CPU seconds free of threads that wait.
 
 #include <algorithm>
 #include <array>
@@ -21,6 +21,8 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -233,7 +235,7 @@ void append_peers(std::vector<Run>& runs) {
   }
   for (const double scale : {1.0, 1e3, 1e-3}) {
     for (const SolveMethod method : {SolveMethod::dense, SolveMethod::compressed})
-      runs.push_back({"units", 1, 2, 6, method, 1e-9, scale});
+      runs.push_back({"units", 1, 4, 2, method, 1e-8, scale});
   }
 }
 
@@ -256,9 +258,9 @@ std::vector<Run> all_runs() {
     both("cube", cuts, refine);
   for (const auto& [cuts, refine] : std::vector<std::pair<int, int>>{{1, 3}, {3, 2}, {7, 1}, {1, 4}})
     both("elasticity", cuts, refine);
-  for (int refine = 1; refine <= 4; ++refine) {
+  for (int refine = 1; refine <= 5; ++refine) {
     for (int degree = 1; degree <= 8; ++degree) {
-      if ((degree + 1) << refine <= 48) runs.push_back({"degrees", 1, refine, degree});
+      if ((degree + 1) << refine <= 96) runs.push_back({"degrees", 1, refine, degree});
     }
   }
   append_peers(runs);
@@ -269,13 +271,17 @@ const char* name_of(solver::SolveMethod method) {
   return method == solver::SolveMethod::dense ? "dense" : "compressed";
 }
 
+bool is_on_sphere(const Run& run) {
+  return run.series.starts_with("sphere");
+}
+
 io::svg::Series series_of(const std::vector<std::pair<Run, Measured>>& results, solver::SolveMethod method,
                           double Measured::*quantity) {
   io::svg::Series series;
   series.name = name_of(method);
   std::vector<std::pair<double, double>> points;
   for (const auto& [run, measured] : results) {
-    if (!run.series.starts_with("sphere") || run.method != method) continue;
+    if (!is_on_sphere(run) || run.method != method) continue;
     points.emplace_back(measured.unknowns, measured.*quantity);
   }
   std::sort(points.begin(), points.end());
@@ -308,11 +314,61 @@ bool is_chosen(const Run& run, const std::vector<std::string>& names) {
          });
 }
 
+using Results = std::vector<std::pair<Run, Measured>>;
+
+constexpr const char* heading =
+    "series,degree,cuts,refine,scale,tolerance,method,unknowns,cpu_seconds,peak_MB,matrix_MB,iterations,error";
+
+std::string line_of(const Run& run, const Measured& measured) {
+  return fmt::format("{},{},{},{},{},{:.0e},{},{},{:.2f},{:.1f},{:.1f},{},{:.2e}", run.series, run.degree, run.cuts,
+                     run.refine, run.scale, run.tolerance, name_of(run.method), measured.unknowns, measured.cpu_seconds,
+                     measured.peak_megabytes, measured.matrix_megabytes, measured.iterations, measured.error);
+}
+
+/// What earlier runs have left.
+Results read_results(const std::filesystem::path& path) {
+  Results results;
+  std::ifstream file(path);
+  std::string line;
+  if (std::getline(file, line) && line != heading)
+    throw std::runtime_error(
+        fmt::format("{}: found the heading \"{}\"; expected \"{}\"", path.string(), line, heading));
+  while (std::getline(file, line)) {
+    std::vector<std::string> cells;
+    std::istringstream words(line);
+    for (std::string cell; std::getline(words, cell, ',');) cells.push_back(cell);
+    const auto number = [&](std::size_t i) { return std::stod(cells.at(i)); };
+    const auto whole = [&](std::size_t i) { return std::stoi(cells.at(i)); };
+    const auto method = cells.at(6) == "dense" ? solver::SolveMethod::dense : solver::SolveMethod::compressed;
+    results.push_back({{cells[0], whole(2), whole(3), whole(1), method, number(5), number(4)},
+                       {number(7), number(8), number(9), number(10), number(11), number(12)}});
+  }
+  return results;
+}
+
+/// Replaces what was measured of the same solve.
+void add_result(const Run& run, const Measured& measured, Results& results) {
+  const auto key = [](const Run& r) {
+    return fmt::format("{} {} {} {} {} {}", r.series, r.degree, r.cuts, r.refine, r.scale, name_of(r.method));
+  };
+  const auto known =
+      std::find_if(results.begin(), results.end(), [&](const auto& result) { return key(result.first) == key(run); });
+  if (known != results.end())
+    *known = {run, measured};
+  else
+    results.emplace_back(run, measured);
+}
+
+void write_results(const std::filesystem::path& path, const Results& results) {
+  std::ofstream table(path);
+  table << heading << '\n';
+  for (const auto& [run, measured] : results) table << line_of(run, measured) << '\n';
+}
+
 int run_all(const std::filesystem::path& folder, const std::vector<std::string>& names) {
   std::filesystem::create_directories(folder);
-  std::ofstream table(folder / "bem_scaling.csv");
-  table << "series,degree,cuts,refine,scale,tolerance,method,unknowns,cpu_seconds,peak_MB,matrix_MB,iterations,error\n";
-  std::vector<std::pair<Run, Measured>> results;
+  const std::filesystem::path path = folder / "bem_scaling.csv";
+  Results results = read_results(path);
   bool all_well = true;
   for (const Run& run : all_runs()) {
     if (!is_chosen(run, names)) continue;
@@ -322,16 +378,12 @@ int run_all(const std::filesystem::path& folder, const std::vector<std::string>&
       all_well = false;
       continue;
     }
-    const std::string line =
-        fmt::format("{},{},{},{},{},{:.0e},{},{},{:.2f},{:.1f},{:.1f},{},{:.2e}\n", run.series, run.degree, run.cuts,
-                    run.refine, run.scale, run.tolerance, name_of(run.method), measured.unknowns, measured.cpu_seconds,
-                    measured.peak_megabytes, measured.matrix_megabytes, measured.iterations, measured.error);
-    table << line << std::flush;
-    fmt::print("{}", line);
+    fmt::print("{}\n", line_of(run, measured));
     std::fflush(stdout);
-    results.emplace_back(run, measured);
+    add_result(run, measured, results);
+    write_results(path, results);
   }
-  if (is_chosen({"sphere"}, names)) {
+  if (std::any_of(results.begin(), results.end(), [](const auto& result) { return is_on_sphere(result.first); })) {
     draw(results, "CPU seconds", &Measured::cpu_seconds, folder / "bem_time.svg");
     draw(results, "peak memory in MB", &Measured::peak_megabytes, folder / "bem_memory.svg");
   }
@@ -346,5 +398,10 @@ int main(int count, char** arguments) {
     fmt::print(stderr, "bem_scaling DIR [SERIES[/DEGREE[/REFINE]]...]\n");
     return 2;
   }
-  return isorim::run_all(arguments[1], {arguments + 2, arguments + count});
+  try {
+    return isorim::run_all(arguments[1], {arguments + 2, arguments + count});
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "bem_scaling: {}\n", error.what());
+    return 2;
+  }
 }

@@ -1,23 +1,28 @@
 #!/usr/bin/env python3
 """Measures isorim beside its peers, and puts the tables into the page that compares them.
 
-    /usr/bin/python3 tests/benchmarks/comparison.py [--programs build/bin] [--repetitions N] [--only NAME] [--write]
+    /usr/bin/python3 tests/benchmarks/comparison.py [--programs build/bin] [--repetitions N] [--only NAME]
+        [--scaling FILE] [--write]
 
-Runs benchmark_bem, benchmark_fit and occt_comparison (build with -DISORIM_BUILD_BENCHMARKS=ON) from the root of the
-tree and prints Markdown; --write replaces the tables of io/manual/comparison.md, each between "<!-- NAME -->" and
-"<!-- end -->". Times are the processor's, the least of N runs. What peers reach that are not run here is quoted from
-the measurements that STORED tells of.
+Runs benchmark_bem, bem_scaling, benchmark_fit and occt_comparison (build with -DISORIM_BUILD_BENCHMARKS=ON) from the
+root of the tree and prints Markdown; --write replaces the tables of io/manual/comparison.md, each between
+"<!-- NAME -->" and "<!-- end -->". Times are the processor's, the least of N runs; those of the series over degree and
+refinement are of one run on one thread, or read from what an earlier one has written (--scaling FILE). What peers reach
+that are not run here is quoted from the measurements that STORED and BEMBEL_SERIES tell of.
 """
 
 import argparse
+import csv
 import datetime
 import importlib.util
 import json
+import os
 import pathlib
 import platform
 import re
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "io/manual/comparison.md"
@@ -39,6 +44,19 @@ STORED = {
     # SciPy's splprep with automatic knots, its smoothing tuned until it chooses the number of control points.
     "fits": ("0.0322 / 0.0151", "0.0312 / 0.0132", "0.0291 / 0.0120", "0.146 / 0.0385"),
 }
+
+
+# Bembel's sphere: P, M, unknowns, relative error; CPU seconds, iterations and peak MB with H2 and CG; CPU seconds and
+# peak MB dense. Iterations stop near machine precision.
+BEMBEL_SERIES = (
+    (0, 2, 96, 7.9e-3, 0.25, 6, 19, 0.09, 6), (0, 3, 384, 8.6e-4, 3.7, 24, 200, 0.41, 10),
+    (0, 4, 1536, 1.1e-4, 28, 60, 902, 9.1, 62), (0, 5, 6144, 1.3e-5, 269, 96, 3455, 129, 878),
+    (1, 2, 150, 1.7e-4, 0.44, 20, 20, 0.26, 8), (1, 3, 486, 4.1e-6, 6.0, 65, 202, 2.5, 32),
+    (1, 4, 1734, 1.2e-7, 73, 185, 911, 38, 401), (1, 5, 6534, 3.7e-9, 847, 332, 3491, None, None),
+    (2, 2, 216, 5.7e-6, 0.88, 29, 23, 0.78, 13), (2, 3, 600, 2.1e-8, 10, 102, 212, 8.8, 117),
+    (2, 4, 1944, 1.9e-10, 176, 378, 947, 165, 1704), (3, 2, 294, 1.5e-7, 2.4, 88, 32, 2.5, 28),
+    (3, 3, 726, 2.4e-10, 31, 256, 243, 38, 335), (3, 4, 2166, 5.2e-11, 466, 869, 1062, 757, 5068),
+)
 
 
 def figure(x, digits=2):
@@ -104,6 +122,49 @@ def torus(options):
     return field_table((*STORED["torus"], *ours))
 
 
+def scaling_rows(options, series):
+    """The rows of a series of bem_scaling, dense and compressed by degree and refinement."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = options.scaling
+        if path is None:
+            os.environ["OMP_NUM_THREADS"] = "1"
+            run([options.programs / "bem_scaling", folder, series])
+            path = pathlib.Path(folder) / "bem_scaling.csv"
+        with path.open(newline="") as lines:
+            found = [row for row in csv.DictReader(lines) if row["series"] == series]
+    pairs = {}
+    for row in found:
+        key = (int(row["degree"]), int(row["refine"]), float(row["scale"]))
+        pairs.setdefault(key, {})[row["method"]] = {
+            name: float(row[name]) for name in ("unknowns", "error", "cpu_seconds", "iterations", "peak_MB")}
+    return pairs
+
+
+SERIES_HEADING = ("unknowns", "relative error", "CPU s, compressed", "iterations", "peak MB", "CPU s, dense", "peak MB")
+
+
+def measured_cells(pair):
+    fast, dense = pair["compressed"], pair["dense"]
+    return (int(fast["unknowns"]), figure(fast["error"]), figure(fast["cpu_seconds"]), int(fast["iterations"]),
+            f"{fast['peak_MB']:.0f}", figure(dense["cpu_seconds"]), f"{dense['peak_MB']:.0f}")
+
+
+def bembel_series(_options):
+    return table(("P", "M", *SERIES_HEADING),
+                 [(*row[:3], figure(row[3]), figure(row[4]), row[5], row[6], figure(row[7]), row[8] or "–")
+                  for row in BEMBEL_SERIES])
+
+
+def degree_series(options, series):
+    rows = [(*key[:2], *measured_cells(pair)) for key, pair in scaling_rows(options, series).items()]
+    return table(("degree", "bisections", *SERIES_HEADING), rows)
+
+
+def units(options):
+    rows = [(f"{scale:g}", *measured_cells(pair)) for (_, _, scale), pair in scaling_rows(options, "units").items()]
+    return table(("radius", *SERIES_HEADING), rows)
+
+
 def kirsch(options):
     program = options.programs / "benchmark_bem"
     rows = [("Simpson's code, degree 2", unknowns, figure(error), "–") for unknowns, error in STORED["kirsch"]]
@@ -147,7 +208,11 @@ def fits(options):
     return table(("section", "SciPy, largest / RMS", "ms", "isorim, largest / RMS", "ms"), rows)
 
 
-TABLES = {"volumes": volumes, "sphere": sphere, "torus": torus, "kirsch": kirsch, "fits": fits}
+TABLES = {"volumes": volumes, "sphere": sphere, "bembel_series": bembel_series,
+          "sphere_series": lambda options: degree_series(options, "peer_sphere"), "torus": torus,
+          "torus_series": lambda options: degree_series(options, "peer_torus"),
+          "neumann_series": lambda options: degree_series(options, "peer_neumann"), "units": units, "kirsch": kirsch,
+          "fits": fits}
 
 
 def machine():
@@ -169,6 +234,7 @@ def main():
     parser.add_argument("--programs", type=pathlib.Path, default=ROOT / "build/bin")
     parser.add_argument("--repetitions", type=int, default=3)
     parser.add_argument("--only", choices=TABLES, action="append")
+    parser.add_argument("--scaling", type=pathlib.Path, help="bem_scaling.csv of an earlier run")
     parser.add_argument("--write", action="store_true", help="into io/manual/comparison.md")
     options = parser.parse_args()
     options.programs = options.programs.resolve()
