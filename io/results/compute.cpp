@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "geometry/topology/outer_shells.h"
 #include "io/analysis/analysis.h"
 #include "io/case/analysis_checks.h"
 #include "io/case/curve_builder.h"
@@ -356,8 +357,13 @@ void add_hydrostatics(const CaseFile& file, const Model<Dim>& model, const RunOp
     if (run.progress) progress = [report = run.progress](double fraction) { report("hydrostatics", fraction); };
     const solver::FloatingBodyOptions options{file.keys.properties.tolerance, run.threads};
     HydrostaticsReport result = located(keys.where, [&] {
-      return compute_hydrostatics(keys, model.oriented.boundary, model.oriented.topology.largest_gap, options,
-                                  progress);
+      const geometry::OrientedBoundary<3> outer = geometry::outer_shells(model.oriented);
+      HydrostaticsReport found =
+          compute_hydrostatics(keys, outer.boundary, model.oriented.topology.largest_gap, options, progress);
+      if (outer.boundary.patches.size() < model.oriented.boundary.patches.size())
+        found.warnings.emplace_back(
+            "hydrostatics: the voids in the solid are taken as sealed: they displace water as the solid does");
+      return found;
     });
     if (file.cad) result.unit = file.cad->unit;
     report.warnings.insert(report.warnings.end(), result.warnings.begin(), result.warnings.end());

@@ -15,6 +15,7 @@
 #include "geometry/errors.h"
 #include "geometry/intersection/clip.h"
 #include "geometry/shapes/transforms.h"
+#include "geometry/topology/outer_shells.h"
 #include "solver/bem/boundary_integrals.h"
 #include "solver/bem/problem.h"
 #include "solver/properties.h"
@@ -104,18 +105,6 @@ RawAddedMass solve_motions(const OrientedBoundary<3>& boundary, const AddedMassO
   return result;
 }
 
-/// The shells that the fluid meets: without voids, and what lies in them.
-OrientedBoundary<3> outer_shells(const OrientedBoundary<3>& boundary) {
-  const auto& shells = boundary.topology.shells;
-  if (std::ranges::none_of(shells, [](const geometry::Shell<3>& shell) { return shell.is_void; })) return boundary;
-  Boundary<3> rest;
-  for (const geometry::Shell<3>& shell : shells)
-    for (const int patch : shell.patches)
-      if (!shell.is_void) rest.patches.push_back(boundary.boundary.patches[static_cast<std::size_t>(patch)]);
-  // A body in a void is now one in a body, which orient() takes for a void.
-  return outer_shells(geometry::orient(rest));
-}
-
 /// Steiner: from the inertia about the centroid to that about the centre.
 void set_displaced(const OrientedBoundary<3>& boundary, const AddedMassOptions& options, AddedMass& result) {
   PropertyOptions<3> property_options;
@@ -162,7 +151,7 @@ Eigen::Matrix<double, 6, 1> AddedMass::coefficients() const {
 AddedMass added_mass(const OrientedBoundary<3>& solid, const AddedMassOptions& options) {
   if (options.refine < 1)
     throw InputError(fmt::format("found {} bisections for added masses; expected 1 or more", options.refine));
-  const OrientedBoundary<3> boundary = outer_shells(solid);
+  const OrientedBoundary<3> boundary = geometry::outer_shells(solid);
   const RawAddedMass fine = solve_motions(boundary, options);
   AddedMassOptions less = options;
   --less.refine;
