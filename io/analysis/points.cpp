@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/excerpt.h"
 
 namespace isorim::io {
 namespace {
@@ -49,7 +50,7 @@ Eigen::MatrixXd read_points(const std::filesystem::path& path, int dim) {
     if (good && numbers.empty()) continue;
     if (!good || numbers.size() != static_cast<std::size_t>(dim)) {
       throw InputError(
-          fmt::format("{}:{}: found \"{}\"; expected {} numbers", path.string(), number, line.substr(0, 60), dim));
+          fmt::format("{}:{}: found \"{}\"; expected {} numbers", path.string(), number, excerpt(line), dim));
     }
     all.insert(all.end(), numbers.begin(), numbers.end());
   }

@@ -9,6 +9,7 @@
 
 #include "geometry/errors.h"
 #include "io/cli/commands.h"
+#include "io/excerpt.h"
 
 namespace isorim::cli {
 namespace {
@@ -22,7 +23,7 @@ double now() {
 void print_message(std::ostream& err, std::string_view message) {
   while (!message.empty()) {
     const std::size_t end = std::min(message.find('\n'), message.size());
-    err << "isorim: " << message.substr(0, end) << '\n';
+    err << "isorim: " << io::excerpt(message.substr(0, end), std::string_view::npos) << '\n';
     message.remove_prefix(std::min(end + 1, message.size()));
   }
 }

@@ -161,6 +161,33 @@ int dispatch_hulls(const CLI::App& hulls, HullsArguments& arguments, OutputForma
   return remove_hull(arguments.library, arguments.name, format, out);
 }
 
+void declare_check(CLI::App& app, CheckArguments& arguments, bool& json) {
+  CLI::App& check =
+      *app.add_subcommand("check", "Tells what is in a case or CAD file, closed or not, without integrating");
+  add_case_options(check, arguments.case_file, arguments.overrides);
+  check.add_option("-o,--output", arguments.output, "Folder for free edges; out/<name> if absent")->type_name("DIR");
+  add_json(check, json, "Prints everything as JSON");
+  add_threads(check, arguments.threads);
+}
+
+void declare_convert(CLI::App& app, ConvertArguments& arguments, bool& loose_faces, bool& json) {
+  CLI::App& convert = *app.add_subcommand("convert", "Writes the boundary of a case or CAD file in another format");
+  convert.add_option("IN", arguments.input, "Case file (.toml) or CAD file")->required();
+  convert
+      .add_option(
+          "OUT", arguments.output,
+          "IGES (.igs, .iges), T-splines by their extraction (.iga), exact cells for ParaView (.vtu), a drawing of "
+          "a region of the plane (.svg), or a watertight mesh of a solid (.stl; --set output.stl_tolerance=T)")
+      ->required();
+  add_overrides(convert, arguments.overrides);
+  convert.add_flag("--faces", loose_faces, "IGES: loose faces even where shells are closed; no solids");
+  convert
+      .add_option("--unit", arguments.unit,
+                  "IGES: unit of the case's lengths, mm if absent; a CAD file's are converted")
+      ->type_name("UNIT");
+  add_json(convert, json, "Prints what was written as JSON");
+}
+
 void declare(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version", std::string(io::program_version()), "Prints the version");
   app.require_subcommand(0, 1);
@@ -185,30 +212,8 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->default_str("-");
   add_threads(verify, arguments.verify.threads);
 
-  CLI::App& check =
-      *app.add_subcommand("check", "Tells what is in a case or CAD file, closed or not, without integrating");
-  add_case_options(check, arguments.check.case_file, arguments.check.overrides);
-  check.add_option("-o,--output", arguments.check.output, "Folder for free edges; out/<name> if absent")
-      ->type_name("DIR");
-  add_json(check, arguments.json, "Prints everything as JSON");
-  add_threads(check, arguments.check.threads);
-
-  CLI::App& convert = *app.add_subcommand("convert", "Writes the boundary of a case or CAD file in another format");
-  convert.add_option("IN", arguments.convert.input, "Case file (.toml) or CAD file")->required();
-  convert
-      .add_option(
-          "OUT", arguments.convert.output,
-          "IGES (.igs, .iges), T-splines by their extraction (.iga), exact cells for ParaView (.vtu), a drawing of "
-          "a region of the plane (.svg), or a watertight mesh of a solid (.stl; --set output.stl_tolerance=T)")
-      ->required();
-  add_overrides(convert, arguments.convert.overrides);
-  convert.add_flag("--faces", arguments.loose_faces, "IGES: loose faces even where shells are closed; no solids");
-  convert
-      .add_option("--unit", arguments.convert.unit,
-                  "IGES: unit of the case's lengths, mm if absent; a CAD file's are converted")
-      ->type_name("UNIT");
-  add_json(convert, arguments.json, "Prints what was written as JSON");
-
+  declare_check(app, arguments.check, arguments.json);
+  declare_convert(app, arguments.convert, arguments.loose_faces, arguments.json);
   declare_picture(app, arguments.picture, arguments.json);
   declare_hulls(app, arguments.hulls, arguments.json);
 

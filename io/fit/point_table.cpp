@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/excerpt.h"
 #include "io/file_bytes.h"
 
 namespace isorim::io {
@@ -49,7 +50,7 @@ std::vector<Line> content_lines(std::string_view text) {
 [[noreturn]] void refuse_decimal_comma(const std::string& name, const Line& line) {
   refuse_line(name, line,
               fmt::format("found \"{}\", which looks like numbers with decimal commas; expected decimal points",
-                          line.text.substr(0, 60)));
+                          excerpt(line.text)));
 }
 
 enum class Separator { comma, semicolon, tab, blank };
@@ -137,7 +138,7 @@ Columns named_columns(const std::vector<std::string_view>& fields, const std::st
   if (columns.x < 0 || columns.y < 0) {
     refuse_line(name, line,
                 fmt::format("found the columns \"{}\"; expected x and y among them, as in \"x, y, weight\"",
-                            line.text.substr(0, 60)));
+                            excerpt(line.text)));
   }
   return columns;
 }
@@ -166,7 +167,7 @@ std::vector<double> numbers_of(const std::vector<std::string_view>& fields, cons
     if (!value || !std::isfinite(*value)) {
       // Blanks between numbers whose commas are no separators: "1,5 2,5".
       if (field.find_first_of(" \t") != std::string_view::npos) refuse_decimal_comma(name, line);
-      refuse_line(name, line, fmt::format("found \"{}\"; expected a number", field));
+      refuse_line(name, line, fmt::format("found \"{}\"; expected a number", excerpt(field)));
     }
     numbers.push_back(*value);
   }

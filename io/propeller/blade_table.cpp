@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "io/excerpt.h"
 
 namespace isorim::io {
 namespace {
@@ -78,7 +79,7 @@ class TableReader {
     if (std::ranges::find(columns_, &blade_columns.front()) != columns_.end()) return;
     std::vector<std::string_view> names;
     for (const BladeColumn& column : blade_columns) names.push_back(column.name);
-    refuse(fmt::format("found \"{}\"; expected a line of names with \"r/R\" among them; known are {}", line,
+    refuse(fmt::format("found \"{}\"; expected a line of names with \"r/R\" among them; known are {}", excerpt(line),
                        fmt::join(names, ", ")));
   }
 
@@ -96,8 +97,8 @@ class TableReader {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error == std::errc() && end == digits.data() + digits.size() && std::isfinite(value)) return value;
     const bool has_comma = cell.find(',') != std::string_view::npos;
-    refuse(
-        fmt::format("found \"{}\" as {}; expected a number{}", cell, column, has_comma ? " with a decimal point" : ""));
+    refuse(fmt::format("found \"{}\" as {}; expected a number{}", excerpt(cell), column,
+                       has_comma ? " with a decimal point" : ""));
   }
 
   std::string_view text_;

@@ -555,6 +555,16 @@ TEST_F(BadFile, FolderIsRefused) {
   EXPECT_THAT(result.err, HasSubstr("is a folder"));
 }
 
+TEST_F(BadFile, BinaryContentOfTablesIsShownWithoutWhatTerminalsActOn) {
+  write("points.csv", "\x1b[31mx\x01;" + std::string(1000, 'y') + "\n1;2\n");
+  const ProgramResult result =
+      run({"run", write("case.toml", "[geometry]\ntype = 'fit'\npoints = 'points.csv'\n"), "-o", path("out")});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("points.csv:1: found the columns \"\\x1b[31mx\\x01;yyy"));
+  EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
+  EXPECT_LT(result.err.size(), 500U);
+}
+
 TEST_F(BadFile, OutputThatIsAFileIsRefused) {
   write("occupied", "");
   const ProgramResult result = run({"run", write("case.toml", circle), "-o", path("occupied")});
