@@ -77,10 +77,11 @@ double growth_in(const NearRequest<Dim>& request, const Cell<Dim - 1>& cell, std
 template <int Dim>
 DirectionRule direction_rule(const NearRequest<Dim>& request, const Cell<Dim - 1>& cell,
                              const std::vector<Complex>& roots, std::size_t d, const SinhMap& map) {
-  double log_rho = 10.0;
-  for (const Complex& root : roots) log_rho = std::min(log_rho, map.log_ellipse_of(root));
+  constexpr double largest = 10.0;
+  double least_sum = std::cosh(largest);
+  for (const Complex& root : roots) least_sum = std::min(least_sum, map.ellipse_sum_of(root));
   const auto growth = [&](Complex u) { return growth_in(request, cell, d, u); };
-  return {map, gauss_points(map, log_rho, request.tolerance, growth)};
+  return {map, gauss_points(map, std::acosh(least_sum), request.tolerance, growth)};
 }
 
 /// The better of a plain and a mapped rule.
@@ -193,20 +194,22 @@ std::pair<Cell<2>, Cell<2>> bisect(const Cell<2>& cell, std::size_t direction, c
   return halves;
 }
 
+/// `known`: the rules along the cell's directions, if they have been made.
 void append_cell(const NearRequest<3>& request, const Cell<2>& cell, const NearestPlace<3>& nearest, int depth,
-                 NodeBuffer<3>& nodes);
+                 const std::array<DirectionRule, 2>* known, NodeBuffer<3>& nodes);
 
 void append_halves(const NearRequest<3>& request, const Cell<2>& cell, std::size_t direction,
                    const NearestPlace<3>& nearest, int depth, NodeBuffer<3>& nodes) {
   const auto [first, second] = bisect(cell, direction, nearest.place);
   for (const Cell<2>& half : {first, second}) {
     const bool holds = half.clamped(nearest.place) == nearest.place;
-    append_cell(request, half, holds ? nearest : nearest_place(*request.shape, half, request.target), depth + 1, nodes);
+    append_cell(request, half, holds ? nearest : nearest_place(*request.shape, half, request.target), depth + 1,
+                nullptr, nodes);
   }
 }
 
 void append_cell(const NearRequest<3>& request, const Cell<2>& cell, const NearestPlace<3>& nearest, int depth,
-                 NodeBuffer<3>& nodes) {
+                 const std::array<DirectionRule, 2>* known, NodeBuffer<3>& nodes) {
   constexpr double most_aspect = 5.0;
   constexpr double most_distortion = 2.0;
   constexpr double least_change = 0.25;
@@ -215,7 +218,7 @@ void append_cell(const NearRequest<3>& request, const Cell<2>& cell, const Neare
   int tensor_points = std::numeric_limits<int>::max();
   std::array<DirectionRule, 2> rules;
   if (!is_own) {
-    for (std::size_t d = 0; d < 2; ++d) rules[d] = direction_rule(request, cell, nearest, d);
+    for (std::size_t d = 0; d < 2; ++d) rules[d] = known ? (*known)[d] : direction_rule(request, cell, nearest, d);
     if (std::max(rules[0].points, rules[1].points) <= most_points) tensor_points = rules[0].points * rules[1].points;
     if (tensor_points <= cheap) return append_tensor(cell, rules, nodes);
   }
@@ -260,29 +263,27 @@ void append_logarithmic(double place, double end, int degree, NodeBuffer<2>& nod
 }  // namespace
 
 template <int Dim>
-std::array<int, Dim - 1> plain_orders(const NearRequest<Dim>& request, const NearestPlace<Dim>& nearest, int most) {
-  std::array<int, Dim - 1> orders{};
-  for (std::size_t d = 0; d < Dim - 1; ++d) {
-    const DirectionRule rule = direction_rule(request, Cell<Dim - 1>(), nearest, d);
-    if (!rule.map.is_identity() || rule.points > most) return {};
-    orders[d] = rule.points;
-  }
-  return orders;
+std::array<DirectionRule, Dim - 1> direction_rules(const NearRequest<Dim>& request, const NearestPlace<Dim>& nearest) {
+  std::array<DirectionRule, Dim - 1> rules;
+  for (std::size_t d = 0; d < Dim - 1; ++d) rules[d] = direction_rule(request, Cell<Dim - 1>(), nearest, d);
+  return rules;
 }
 
 template <>
-void near_rule(const NearRequest<3>& request, const NearestPlace<3>& nearest, NodeBuffer<3>& nodes) {
+void near_rule(const NearRequest<3>& request, const NearestPlace<3>& nearest, const std::array<DirectionRule, 2>* known,
+               NodeBuffer<3>& nodes) {
   nodes.size = 0;
   if (request.region != nullptr) {
     const bool is_kept = request.is_own || winding_number(*request.region, nearest.place) > 0.5;
     const auto around = is_kept ? PolarRule::Around::place : PolarRule::Around::hole;
     return PolarRule(request, request.region->curves, nearest.place, nearest.jet, request.is_own, around).append(nodes);
   }
-  append_cell(request, Cell<2>(), nearest, 0, nodes);
+  append_cell(request, Cell<2>(), nearest, 0, known, nodes);
 }
 
 template <>
-void near_rule(const NearRequest<2>& request, const NearestPlace<2>& nearest, NodeBuffer<2>& nodes) {
+void near_rule(const NearRequest<2>& request, const NearestPlace<2>& nearest, const std::array<DirectionRule, 1>* known,
+               NodeBuffer<2>& nodes) {
   nodes.size = 0;
   if (request.is_own) {
     const SinhMap plain;
@@ -292,7 +293,7 @@ void near_rule(const NearRequest<2>& request, const NearestPlace<2>& nearest, No
     append_logarithmic(request.place[0], 1.0, degree, nodes);
     return;
   }
-  const DirectionRule whole = direction_rule(request, Cell<1>(), nearest, 0);
+  const DirectionRule whole = known ? (*known)[0] : direction_rule(request, Cell<1>(), nearest, 0);
   if (whole.points <= most_points) return append_line(Cell<1>(), whole, nodes);
   // Towards the nearest place from both sides.
   Cell<1> below;
@@ -305,7 +306,7 @@ void near_rule(const NearRequest<2>& request, const NearestPlace<2>& nearest, No
   }
 }
 
-template std::array<int, 1> plain_orders(const NearRequest<2>&, const NearestPlace<2>&, int);
-template std::array<int, 2> plain_orders(const NearRequest<3>&, const NearestPlace<3>&, int);
+template std::array<DirectionRule, 1> direction_rules(const NearRequest<2>&, const NearestPlace<2>&);
+template std::array<DirectionRule, 2> direction_rules(const NearRequest<3>&, const NearestPlace<3>&);
 
 }  // namespace isorim::quadrature

@@ -1,16 +1,20 @@
 #pragma once
 
+#include <array>
+
+#include "quadrature/direction_rule.h"
 #include "quadrature/near_request.h"
 
 /// Places and weights on the unit cell for targets on an element or close to it.
 namespace isorim::quadrature {
 
-/// The plain tensor Gauss-Legendre rule over the whole cell that serves the target; 0 points: none of at most `most`
-/// points in each direction does.
+/// Of a target off the element: the rules along each direction of the whole cell, mapped where that helps. Where none
+/// is mapped the tensor rule of their points serves the target.
 template <int Dim>
-std::array<int, Dim - 1> plain_orders(const NearRequest<Dim>& request, const NearestPlace<Dim>& nearest, int most);
+std::array<DirectionRule, Dim - 1> direction_rules(const NearRequest<Dim>& request, const NearestPlace<Dim>& nearest);
 
-/// Sets `place`, `cell_weight` and `size` of the nodes.
+/// Sets `place`, `cell_weight` and `size` of the nodes. `known`: direction_rules() of a target off the element, or
+/// null.
 ///
 /// Off the element: Gauss-Legendre rules with a sinh map in each direction, or, where that needs fewer points, polar
 /// coordinates about the nearest place in the metric of the surface there, with sinh maps along rays and angles. On the
@@ -22,6 +26,7 @@ std::array<int, Dim - 1> plain_orders(const NearRequest<Dim>& request, const Nea
 /// Tornberg, Quadrature error estimates for layer potentials evaluated near curved surfaces in three dimensions,
 /// Comput. Math. Appl. 111 (2022) 1-19).
 template <int Dim>
-void near_rule(const NearRequest<Dim>& request, const NearestPlace<Dim>& nearest, NodeBuffer<Dim>& nodes);
+void near_rule(const NearRequest<Dim>& request, const NearestPlace<Dim>& nearest,
+               const std::array<DirectionRule, Dim - 1>* known, NodeBuffer<Dim>& nodes);
 
 }  // namespace isorim::quadrature

@@ -6,9 +6,12 @@
 
 namespace isorim::quadrature {
 
+double ellipse_sum(std::complex<double> z) {
+  return std::max(std::sqrt(std::norm(z)) + std::sqrt(std::norm(z - 1.0)), 1.0);
+}
+
 double log_ellipse(std::complex<double> z) {
-  const double sum = std::sqrt(std::norm(z)) + std::sqrt(std::norm(z - 1.0));
-  return std::acosh(std::max(sum, 1.0));
+  return std::acosh(ellipse_sum(z));
 }
 
 SinhMap::SinhMap(double centre, double scale)
@@ -40,10 +43,14 @@ std::complex<double> SinhMap::at(std::complex<double> g) const {
 }
 
 double SinhMap::log_ellipse_of(std::complex<double> u) const {
-  if (is_identity()) return log_ellipse(u);
+  return std::acosh(ellipse_sum_of(u));
+}
+
+double SinhMap::ellipse_sum_of(std::complex<double> u) const {
+  if (is_identity()) return ellipse_sum(u);
   const std::complex<double> t = std::asinh((u - centre_) / scale_);
   const std::complex<double> mirrored(-t.real(), std::numbers::pi - std::abs(t.imag()));
-  return std::min(log_ellipse((t - first_) / length_), log_ellipse((mirrored - first_) / length_));
+  return std::min(ellipse_sum((t - first_) / length_), ellipse_sum((mirrored - first_) / length_));
 }
 
 Growth::Growth(double degree) {

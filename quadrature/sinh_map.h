@@ -16,6 +16,8 @@ namespace isorim::quadrature {
 /// log rho of the Bernstein ellipse about [0, 1] that passes through z: Chebyshev coefficients of a function that is
 /// analytic inside it fall like rho^-k.
 double log_ellipse(std::complex<double> z);
+/// Its hyperbolic cosine, at least 1: the sum of the distances of z from both ends, which is cheaper to compare.
+double ellipse_sum(std::complex<double> z);
 
 /// The interval [0, 1] mapped to itself by u(g) = centre + scale sinh(t0 + g (t1 - t0)), which turns integrands with
 /// singularities at centre +- i scale into ones that are analytic in a strip of half the width pi (Johnston & Elliott,
@@ -40,6 +42,8 @@ class SinhMap {
   std::complex<double> at(std::complex<double> g) const;
   /// log_ellipse of that preimage of u which lies nearest to the interval.
   double log_ellipse_of(std::complex<double> u) const;
+  /// Its hyperbolic cosine.
+  double ellipse_sum_of(std::complex<double> u) const;
 
  private:
   double centre_ = 0.0;
@@ -64,11 +68,6 @@ class Growth {
   std::array<float, 17> values_{};
 };
 
-/// The point of the ellipse about [0, 1] at an angle's cosine and sine.
-inline std::complex<double> ellipse_point(double log_rho, double cosine, double sine) {
-  return {0.5 + 0.5 * std::cosh(log_rho) * cosine, 0.5 * std::sinh(log_rho) * sine};
-}
-
 /// The number of points of a Gauss-Legendre rule in g for an integrand with the given log_ellipse_of its nearest
 /// singularity, times factors that grow like exp(growth(u)), u = map.at(g), to the tolerance (relative to the size of
 /// the integrand on the interval). Any singularity weaker than the inverse cube of the distance.
@@ -82,9 +81,10 @@ int gauss_points(const SinhMap& map, double log_rho, double tolerance, const Gro
   double least = max_gauss_points;
   double l = std::clamp(log_rho, 0.01, 4.0);
   for (int k = 0; k < most_ellipses; ++k, l *= shrink) {
-    const double grown =
-        std::max({0.0, growth(map.at(ellipse_point(l, 1.0, 0.0))), growth(map.at(ellipse_point(l, 0.0, 1.0))),
-                  growth(map.at(ellipse_point(l, -1.0, 0.0)))});
+    // The ends of the ellipse about [0, 1], and its top.
+    const double half = 0.5 * std::cosh(l);
+    const double grown = std::max({0.0, growth(map.at({0.5 + half, 0.0})), growth(map.at({0.5, 0.5 * std::sinh(l)})),
+                                   growth(map.at({0.5 - half, 0.0}))});
     const double points = (digits + grown) / (2.0 * l);
     if (points > least) break;
     least = points;

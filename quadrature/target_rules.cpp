@@ -34,6 +34,16 @@ int rounded_order(int order) {
   return order <= 8 ? order : order + order % 2;
 }
 
+/// Of the plain tensor rule; 0 where a direction is mapped or has too many points to be kept.
+template <int Dim>
+std::array<int, Dim - 1> plain_orders(const std::array<DirectionRule, Dim - 1>& rules) {
+  std::array<int, Dim - 1> orders{};
+  for (std::size_t d = 0; d < Dim - 1; ++d) {
+    if (rules[d].map.is_identity() && rules[d].points <= most_kept_order) orders[d] = rounded_order(rules[d].points);
+  }
+  return orders;
+}
+
 template <int Dim>
 NodeView<Dim> view_of(const NodeBuffer<Dim>& nodes) {
   NodeView<Dim> view;
@@ -239,15 +249,16 @@ NodeView<Dim> TargetRules<Dim>::nodes(int element, const Target<Dim>& target, No
   const NearRequest<Dim> request{&shape,       target.position,           is_own,
                                  target.place, state_->options.tolerance, state.cut ? state.cut->boundary : nullptr};
   NearestPlace<Dim> nearest;
+  std::array<DirectionRule, Dim - 1> rules;
   if (is_own) {
     nearest = {target.place, element_jet(shape.net, target.place, target.position), 0.0};
   } else {
     nearest = nearest_place(shape, Cell<Dim - 1>(), target.position);
-    std::array<int, Dim - 1> orders = plain_orders(request, nearest, most_kept_order);
-    for (int& order : orders) order = rounded_order(order);
+    rules = direction_rules(request, nearest);
+    const auto orders = plain_orders<Dim>(rules);
     if (state_->can_keep(orders)) return state_->kept(state, orders).view;
   }
-  near_rule(request, nearest, buffer);
+  near_rule(request, nearest, is_own ? nullptr : &rules, buffer);
   evaluate_nodes(shape.net, target.position, buffer);
   NodeView<Dim> view = view_of(buffer);
   for (std::size_t c = 0; c < Dim; ++c) view.offset[c] = std::span(buffer.offset[c]).first(buffer.size);
