@@ -1,6 +1,9 @@
 #include "io/results/hdf5.h"
 
+#include <cstdint>
 #include <filesystem>
+#include <iterator>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -9,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/errors.h"
+#include "io/results/hdf5_parts.h"
 #include "io/results/json.h"
 #include "tests/io/cli/program_test.h"
 
@@ -158,6 +162,49 @@ TEST_F(Hdf5, FileThatCannotBeWrittenIsNamedAndNothingIsLeft) {
     EXPECT_NE(std::string(error.what()).find("results.h5"), std::string::npos) << error.what();
   }
   EXPECT_FALSE(std::filesystem::exists(target));
+}
+
+/// Numbers that are not compressed and take more room than a file of HDF5 begins with.
+void write_numbers(hid_t file, double first) {
+  std::vector<double> numbers(100'000);
+  std::iota(numbers.begin(), numbers.end(), first);
+  hdf5::write_dataset(file, "numbers", numbers, {numbers.size()});
+  hdf5::write_text_attribute(file, "text", "ß");
+}
+
+TEST_F(Hdf5, FilesMadeInMemoryAndOnTheDiskHoldTheSame) {
+  for (const std::uintmax_t expected_size : {std::uintmax_t{0}, hdf5::largest_image + 1}) {
+    hdf5::write_new_file(
+        path("new.h5"), [](hid_t file) { write_numbers(file, 0.5); }, expected_size);
+    const Reader file(path("new.h5"));
+    const std::vector<double> numbers = file.reals("numbers");
+    ASSERT_EQ(numbers.size(), 100'000U);
+    EXPECT_EQ(numbers.back(), 99'999.5);
+    EXPECT_EQ(file.text_attribute("/", "text"), "ß");
+    const auto size = std::filesystem::file_size(path("new.h5"));
+    EXPECT_LT(size, 8U * 100'000U + 10'000U);
+    std::filesystem::remove(path("new.h5"));
+  }
+}
+
+TEST_F(Hdf5, WritersThatFailLeaveWhatStoodThere) {
+  hdf5::write_new_file(path("old.h5"), [](hid_t file) { write_numbers(file, 0.0); });
+  const std::string before = testing::read_file(path("old.h5"));
+  for (const std::uintmax_t expected_size : {std::uintmax_t{0}, hdf5::largest_image + 1}) {
+    const auto twice = [](hid_t file) {
+      write_numbers(file, 1.0);
+      write_numbers(file, 2.0);
+    };
+    try {
+      hdf5::write_new_file(path("old.h5"), twice, expected_size);
+      FAIL();
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("old.h5: HDF5 failed: making dataset numbers"), std::string::npos)
+          << error.what();
+    }
+    EXPECT_EQ(testing::read_file(path("old.h5")), before);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder()), {}), 1);
+  }
 }
 
 }  // namespace
