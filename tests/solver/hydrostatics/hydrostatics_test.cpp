@@ -26,7 +26,7 @@ using geometry::Point3;
 using geometry::Vector3;
 using std::numbers::pi;
 
-Hydrostatics at(const Boundary<3>& boundary, const Attitude& attitude, std::optional<ShipFrame> frame = {}) {
+Hydrostatics at(const Boundary<3>& boundary, const Attitude& attitude, const std::optional<ShipFrame>& frame = {}) {
   const FloatingBody body(boundary);
   const ShipFrame ship = frame.value_or(default_frame(body));
   const geometry::PlaneCutter cutter(boundary);
