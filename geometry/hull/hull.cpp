@@ -1,5 +1,6 @@
 #include "geometry/hull/hull.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
@@ -40,6 +41,22 @@ std::vector<Interval> open_parts(const NurbsCurve<3>& edge) {
   return parts;
 }
 
+/// Without the edges at which one piece of a band goes on as the next.
+void drop_joined(std::vector<NurbsCurve<3>>& ends, std::vector<NurbsCurve<3>>& beginnings) {
+  for (auto end = ends.begin(); end != ends.end();) {
+    const auto next = std::find_if(beginnings.begin(), beginnings.end(), [&](const NurbsCurve<3>& beginning) {
+      return end->homogeneous().cols() == beginning.homogeneous().cols() &&
+             end->homogeneous() == beginning.homogeneous();
+    });
+    if (next == beginnings.end()) {
+      ++end;
+    } else {
+      beginnings.erase(next);
+      end = ends.erase(end);
+    }
+  }
+}
+
 /// Adds surfaces ruled from the edges to their images; several are numbered.
 void add_ruled(Boundary<3>& hull, const std::string& name, const std::vector<NurbsCurve<3>>& edges) {
   std::vector<NurbsSurface<3>> pieces;
@@ -70,6 +87,7 @@ Boundary<3> close_hull(std::span<const NurbsSurface<3>> port) {
     const std::array<NurbsCurve<3>, 4> sides = boundary_curves(band);
     for (std::size_t k = 0; k < sides.size(); ++k) edges[k].push_back(sides[k]);
   }
+  drop_joined(edges[1], edges[3]);
   add_ruled(hull, "bottom", {edges[0].front()});
   add_ruled(hull, "deck", {edges[2].back()});
   add_ruled(hull, "stern", edges[3]);

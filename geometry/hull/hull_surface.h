@@ -32,6 +32,9 @@ struct HullSurfaceOptions {
 /// plane where points come near it: control points that would are put on it. What the points leave open is as smooth as
 /// possible (SmoothestSpline), first along the sections, then across. A biquadratic y(x, z) is reproduced.
 ///
+/// Where there is a bulb the lowest band is three surfaces: the hull below the line that runs aft from the notch
+/// between bulb and stem, the bulb ahead of the notch, and the hull above the line (bulb_hull_surface()).
+///
 /// Throws GeometryError for fewer than two sections, sections whose mean x do not rise, points that coincide.
 std::vector<NurbsSurface<3>> hull_surface(std::span<const HullSection> sections,
                                           const HullSurfaceOptions& options = {});

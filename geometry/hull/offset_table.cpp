@@ -50,7 +50,7 @@ void check_places(const OffsetTable& table, const std::string& what, const Point
   if (may_be_missing && places.cols() == 0) return;
   check_count(table, what, places.cols(), table.stations.size());
   for (Eigen::Index i = 0; i < places.cols(); ++i) {
-    if (may_be_missing && std::isnan(places(1, i))) continue;
+    if ((may_be_missing || is_bulb_station(table, i)) && std::isnan(places(1, i))) continue;
     if (!places.col(i).allFinite() || places(0, i) < 0.0) {
       refuse(table, fmt::format("{} at station {}: half-breadth {}, height {}; expected numbers, the first not "
                                 "negative",
@@ -59,19 +59,32 @@ void check_places(const OffsetTable& table, const std::string& what, const Point
   }
 }
 
-void check_contour(const OffsetTable& table, const char* what, const Points<2>& contour,
-                   const std::vector<int>& knuckles, bool is_ahead) {
-  if (contour.cols() == 0) return;
+/// x of the last station that is no section of the bulb.
+double last_full_station(const OffsetTable& table) {
+  for (auto i = static_cast<Eigen::Index>(table.stations.size()); i-- > 0;)
+    if (!is_bulb_station(table, i)) return table.stations[static_cast<std::size_t>(i)];
+  refuse(table, fmt::format("all stations lie ahead of the stem, which begins at x = {}", table.stem(0, 0)));
+}
+
+/// Points ahead of (abaft) the station at `limit`.
+void check_contour_points(const OffsetTable& table, const char* what, const Points<2>& contour, double limit,
+                          bool is_ahead) {
   if (contour.cols() < 2) refuse(table, fmt::format("the {} has one point; expected at least two", what));
   if (!contour.allFinite()) refuse(table, fmt::format("the {} has a point that is not finite", what));
   for (Eigen::Index i = 0; i < contour.cols(); ++i) {
     const double x = contour(0, i);
-    if (is_ahead ? x > table.stations.back() : x < table.stations.front()) continue;
+    if (is_ahead ? x > limit : x < limit) continue;
     refuse(table, fmt::format("point {} of the {} lies at x = {}; expected it {} all stations ({}): leave out stations "
-                              "that the contour crosses",
-                              i + 1, what, x, is_ahead ? "ahead of" : "abaft",
-                              is_ahead ? table.stations.back() : table.stations.front()));
+                              "that the contour crosses; where these are sections of a bulb, give its contour as "
+                              "\"bulb\" and the stem from the notch above it upwards",
+                              i + 1, what, x, is_ahead ? "ahead of" : "abaft", limit));
   }
+}
+
+void check_contour(const OffsetTable& table, const char* what, const Points<2>& contour,
+                   const std::vector<int>& knuckles, bool is_ahead) {
+  if (contour.cols() == 0) return;
+  check_contour_points(table, what, contour, is_ahead ? last_full_station(table) : table.stations.front(), is_ahead);
   if (knuckles.size() != table.knuckles.size()) {
     refuse(table, fmt::format("the {} has {} points on knuckles; expected one for each of {}", what, knuckles.size(),
                               table.knuckles.size()));
@@ -80,6 +93,20 @@ void check_contour(const OffsetTable& table, const char* what, const Points<2>& 
     if (column <= 0 || column + 1 >= contour.cols())
       refuse(table,
              fmt::format("a knuckle ends at point {} of the {}; expected one between its ends", column + 1, what));
+  }
+}
+
+void check_bulb(const OffsetTable& table) {
+  if (table.bulb.cols() == 0) return;
+  if (table.stem.cols() == 0)
+    refuse(table, "there is a bulb but no stem; expected the stem's contour from the notch above the bulb upwards");
+  check_contour_points(table, "bulb", table.bulb, table.stations.back(), true);
+  for (const KnuckleLine& line : table.knuckles) {
+    for (Eigen::Index i = 0; i < line.places.cols(); ++i) {
+      if (!is_bulb_station(table, i) || std::isnan(line.places(1, i))) continue;
+      refuse(table, fmt::format("knuckle \"{}\" has a place at station {}, which lies in the bulb; expected none there",
+                                line.name, table.station_names[std::size_t(i)]));
+    }
   }
 }
 
@@ -109,6 +136,7 @@ struct SectionPoint {
 
 /// The knuckles put between the points of a section by their heights; one that coincides with a point replaces it.
 void add_knuckles(const OffsetTable& table, Eigen::Index station, std::vector<SectionPoint>& points) {
+  if (is_bulb_station(table, station)) return;
   for (std::size_t k = 0; k < table.knuckles.size(); ++k) {
     const SectionPoint knuckle{table.knuckles[k].places(0, station), table.knuckles[k].places(1, station),
                                first_knuckle_line - static_cast<int>(k)};
@@ -171,7 +199,20 @@ HullSection station_section(const OffsetTable& table, Eigen::Index station) {
   HullSection section = assembled(table, fmt::format("station {}", table.station_names[i]), points,
                                   std::vector<double>(points.size(), table.stations[i]));
   section.is_level_at_keel = table.has_tangent_bottom && keel && keel->y > 0.0;
+  section.is_in_bulb = is_bulb_station(table, station);
   return section;
+}
+
+/// A section of the bulb begins and ends in the centre plane.
+void check_bulb_section(const OffsetTable& table, const HullSection& section) {
+  for (const Eigen::Index end : {Eigen::Index{0}, section.points.cols() - 1}) {
+    if (section.points(1, end) == 0.0) continue;
+    refuse(table, fmt::format("{} lies ahead of the stem (x = {}), in the bulb, and {} with the half-breadth {} at "
+                              "height {}; expected it in the centre plane there, by \"keel\" and \"deck\" with the "
+                              "half-breadth 0",
+                              section.name, table.stem(0, 0), end == 0 ? "begins" : "ends", section.points(1, end),
+                              section.points(2, end)));
+  }
 }
 
 /// Between the ends of the hull a section may touch the centre plane at its keel and deck only.
@@ -214,12 +255,18 @@ void check_knuckle_order(const OffsetTable& table, const std::vector<HullSection
     return lines;
   };
   for (const HullSection& section : sections) {
+    if (section.is_in_bulb) continue;
     if (order(section) == order(sections.front())) continue;
     refuse(table, fmt::format("{} meets the knuckles in another order than {}", section.name, sections.front().name));
   }
 }
 
 }  // namespace
+
+bool is_bulb_station(const OffsetTable& table, Eigen::Index station) {
+  return table.bulb.cols() > 0 && table.stem.cols() > 0 &&
+         table.stations[static_cast<std::size_t>(station)] > table.stem(0, 0);
+}
 
 void check(const OffsetTable& table) {
   check_positive(table, "length", table.length);
@@ -237,6 +284,7 @@ void check(const OffsetTable& table) {
     check_places(table, fmt::format("knuckle \"{}\"", line.name), line.places, false);
   check_contour(table, "stem", table.stem, table.stem_knuckles, true);
   check_contour(table, "stern", table.stern, table.stern_knuckles, false);
+  check_bulb(table);
   if (!table.area_ratios.empty())
     check_count(table, "areas", static_cast<Eigen::Index>(table.area_ratios.size()), table.stations.size());
 }
@@ -245,10 +293,24 @@ std::vector<HullSection> hull_sections(const OffsetTable& table) {
   check(table);
   std::vector<HullSection> sections;
   if (table.stern.cols() > 0) sections.push_back(contour_section(table, "stern", table.stern, table.stern_knuckles));
-  for (std::size_t i = 0; i < table.stations.size(); ++i)
-    sections.push_back(station_section(table, static_cast<Eigen::Index>(i)));
-  if (table.stem.cols() > 0) sections.push_back(contour_section(table, "stem", table.stem, table.stem_knuckles));
-  for (std::size_t i = 1; i + 1 < sections.size(); ++i) check_thickness(table, sections[i]);
+  const auto add_stem = [&] {
+    if (table.stem.cols() > 0) sections.push_back(contour_section(table, "stem", table.stem, table.stem_knuckles));
+  };
+  bool has_stem = false;
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(table.stations.size()); ++i) {
+    if (is_bulb_station(table, i) && !std::exchange(has_stem, true)) add_stem();
+    sections.push_back(station_section(table, i));
+  }
+  if (!has_stem) add_stem();
+  if (table.bulb.cols() > 0) {
+    sections.push_back(contour_section(table, "bulb", table.bulb, {}));
+    sections.back().is_in_bulb = true;
+    sections.back().lines.back() = no_line;
+  }
+  for (std::size_t i = 1; i + 1 < sections.size(); ++i) {
+    if (!sections[i].is_contour) check_thickness(table, sections[i]);
+    if (sections[i].is_in_bulb) check_bulb_section(table, sections[i]);
+  }
   check_knuckle_order(table, sections);
   return sections;
 }
@@ -271,7 +333,7 @@ OffsetTable scaled(const OffsetTable& table, const Vector3& factors) {
   scale_places(result.keel);
   scale_places(result.deck);
   for (KnuckleLine& line : result.knuckles) scale_places(line.places);
-  for (Points<2>* contour : {&result.stem, &result.stern}) {
+  for (Points<2>* contour : {&result.stem, &result.stern, &result.bulb}) {
     for (Eigen::Index i = 0; i < contour->cols(); ++i) contour->col(i) << along((*contour)(0, i)), up((*contour)(1, i));
   }
   return result;

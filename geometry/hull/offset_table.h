@@ -48,6 +48,10 @@ struct OffsetTable {
   /// hull ends with its last station then.
   Points<2> stem;
   Points<2> stern;
+  /// The contour of a bulb, x and z, from its keel around the nose to its top, ahead of all stations. May be empty.
+  /// Where there is a bulb, the stem begins at the notch above it, and the stations ahead of the notch
+  /// (is_bulb_station()) are sections of the bulb alone: closed in the centre plane at their keel and deck.
+  Points<2> bulb;
   /// Each from the first to the last station, in any order. Where there are contours the line ends on them at
   /// the contour's point of the same place in the list of knuckles: `stem_knuckles` and `stern_knuckles` hold these
   /// columns.
@@ -58,14 +62,17 @@ struct OffsetTable {
   std::vector<double> area_ratios;
 };
 
+/// Whether the station cuts the bulb, ahead of the stem's first point.
+bool is_bulb_station(const OffsetTable& table, Eigen::Index station);
+
 /// Throws GeometryError naming the table and the station or waterline: counts that contradict each other, numbers that
 /// are not finite, lengths that are not positive, stations or waterlines that do not rise, negative half-breadths,
-/// contours that reach the stations.
+/// contours that reach the stations, a bulb without a stem above it.
 void check(const OffsetTable& table);
 
 /// A transverse section of a hull, or its stem or stern contour, as points from the keel to the deck.
 struct HullSection {
-  /// "station 3", "stem", "stern".
+  /// "station 3", "stem", "stern", "bulb".
   std::string name;
   /// 3 x n.
   Points<3> points;
@@ -75,13 +82,17 @@ struct HullSection {
   std::vector<int> lines;
   /// Leaves a flat of bottom along it.
   bool is_level_at_keel = false;
-  /// The stem or stern contour.
+  /// The contour of stem, stern or bulb.
   bool is_contour = false;
+  /// A section of the bulb ahead of the stem, or its contour.
+  bool is_in_bulb = false;
 };
 
-/// The sections from aft forward, with the contours where the table has them. Throws GeometryError as check() does, and
+/// The sections from aft forward, with the contours where the table has them; with a bulb the stem follows the last
+/// station abaft of the notch, then come the bulb's stations and its contour. Throws GeometryError as check() does, and
 /// for a section of fewer than two points, a knuckle at the height of a waterline with another half-breadth, knuckles
-/// that the sections meet in different orders, and sections between the ends without thickness.
+/// that the sections meet in different orders, and sections between the ends without thickness, those
+/// of a bulb that do not end in the centre plane.
 std::vector<HullSection> hull_sections(const OffsetTable& table);
 
 /// All coordinates times the factors, about the origin.

@@ -125,7 +125,10 @@ Halves halves_of(const SectionalAreas& curve, const OffsetTable& table) {
 
 double section_area(std::span<const NurbsSurface<3>> bands, double u, double height) {
   double area = 0.0;
-  for (const NurbsSurface<3>& band : bands) area += area_of_line(isoparametric_curve(band, Direction::v, u), height);
+  for (const NurbsSurface<3>& band : bands) {
+    const Interval domain = band.knots_u().domain();
+    if (u >= domain.first && u <= domain.last) area += area_of_line(isoparametric_curve(band, Direction::v, u), height);
+  }
   return area;
 }
 
@@ -133,10 +136,14 @@ SectionalAreas sectional_areas(const OffsetTable& table, const HullSurfaceOption
   const std::vector<HullSection> sections = hull_sections(table);
   const std::vector<NurbsSurface<3>> bands = hull_surface(sections, options);
   SectionalAreas curve;
-  curve.places = section_parameters(sections);
+  const std::vector<double> places = section_parameters(sections);
   const double height = table.baseline + table.draught;
-  for (std::size_t i = 0; i < sections.size(); ++i)
-    curve.areas.push_back(sections[i].is_contour ? 0.0 : section_area(bands, curve.places[i], height));
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    // A stem above a bulb is no end of the curve.
+    if (sections[i].is_contour && i > 0 && i + 1 < sections.size()) continue;
+    curve.places.push_back(places[i]);
+    curve.areas.push_back(sections[i].is_contour ? 0.0 : section_area(bands, places[i], height));
+  }
   measure(curve);
   return curve;
 }
@@ -186,6 +193,9 @@ OffsetTable shift_sections(const OffsetTable& table, const SectionShift& target,
   }
   OffsetTable result = table;
   for (double& x : result.stations) x = halves.moved(x, factors);
+  // The notch moves with the sections about it; the nose is an end of the ship.
+  if (table.bulb.cols() > 0)
+    for (double& x : result.stem.row(0)) x = halves.moved(x, factors);
   return result;
 }
 

@@ -47,6 +47,11 @@ const Schema<HullKeys>& schema<HullKeys>() {
                {.text = "A file of hulls, as isorim hulls keeps it; a relative path begins at the folder of the case "
                         "file."})
           .key("scale", &HullKeys::scale, {.text = "Scales length, beam and draught."})
+          .key("fair", &HullKeys::fair,
+               {.text = "Moves half-breadths, after scaling, by at most this, a length, to the fairest table; absent: "
+                        "none is moved. Half the last digit of the table's numbers, say.",
+                .unit = "length",
+                .range = Range::above(0)})
           .key("shift", &HullKeys::shift, {.text = "Moves the sections along the ship."})
           .choice("parameters", &HullKeys::parameters,
                   {{"automatic", SectionParameters::automatic},

@@ -30,6 +30,8 @@ struct HullKeys : SolidKeys {
   /// A library file.
   std::string library;
   std::optional<HullScaleKeys> scale;
+  /// By how much half-breadths may be moved to make the scaled table fair.
+  std::optional<double> fair;
   std::optional<HullShiftKeys> shift;
   geometry::SectionParameters parameters = geometry::SectionParameters::automatic;
   /// Where relative paths begin, the folder of the case file; set by its reader.

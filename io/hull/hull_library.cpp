@@ -67,6 +67,7 @@ void write_table(hid_t group, const OffsetTable& table) {
   write_matrix(group, "deck", table.deck);
   write_matrix(group, "stem", table.stem);
   write_matrix(group, "stern", table.stern);
+  write_matrix(group, "bulb", table.bulb);
   write_matrix(group, "stem_knuckles", column_numbers(table.stem_knuckles));
   write_matrix(group, "stern_knuckles", column_numbers(table.stern_knuckles));
   write_list(group, "area_ratios", table.area_ratios);
@@ -169,6 +170,8 @@ OffsetTable read_table(hid_t group) {
   table.deck = read_places(group, "deck");
   table.stem = read_places(group, "stem");
   table.stern = read_places(group, "stern");
+  // Files of before have none.
+  if (H5Lexists(group, "bulb", H5P_DEFAULT) > 0) table.bulb = read_places(group, "bulb");
   table.stem_knuckles = read_columns(group, "stem_knuckles");
   table.stern_knuckles = read_columns(group, "stern_knuckles");
   table.area_ratios = read_list(group, "area_ratios");

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "geometry/errors.h"
+#include "geometry/hull/fairing.h"
 #include "geometry/hull/hull.h"
 #include "geometry/hull/sectional_areas.h"
 #include "io/case/face_builder.h"
@@ -56,12 +57,22 @@ geometry::Boundary<3> finished_hull(geometry::Boundary<3> solid, const HullKeys&
   return finished<3>(std::move(solid), naming);
 }
 
+HullFairing make_fair(OffsetTable& table, double tolerance, const geometry::HullSurfaceOptions& options) {
+  geometry::FairedOffsets faired = fair_offsets(table, tolerance);
+  HullFairing fairing{tolerance, faired.moved, faired.largest_move, faired.roughness_before, faired.roughness, {}};
+  fairing.before = measure_fairness(table, hull_surface(hull_sections(table), options));
+  table = std::move(faired.table);
+  return fairing;
+}
+
 HullShape build(const HullKeys& keys) {
   const geometry::HullSurfaceOptions options{keys.parameters};
   HullShape shape;
   HullFacts& facts = shape.facts;
   facts.table = offsets_of(keys);
   if (keys.scale) facts.table = scaled(facts.table, scale_factors(facts.table, *keys.scale));
+  const Eigen::MatrixXd given = facts.table.half_breadths;
+  if (keys.fair) facts.fairing = make_fair(facts.table, *keys.fair, options);
   geometry::SectionalAreas areas = sectional_areas(facts.table, options);
   if (keys.shift) {
     const geometry::SectionShift target{
@@ -77,7 +88,9 @@ HullShape build(const HullKeys& keys) {
   } else {
     facts.port = hull_surface(hull_sections(facts.table), options);
   }
-  facts.offset_distance = largest_offset_distance(hull_sections(facts.table), facts.port);
+  OffsetTable as_given = facts.table;
+  as_given.half_breadths = given;
+  facts.offset_distance = largest_offset_distance(hull_sections(as_given), facts.port);
   facts.fairness = measure_fairness(facts.table, facts.port);
   shape.boundary.boundary = finished_hull(geometry::close_hull(facts.port), keys);
   return shape;

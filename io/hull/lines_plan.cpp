@@ -55,23 +55,40 @@ geometry::LinePlanes planes_of(const OffsetTable& table, const LinesPlanKeys& ke
   return planes;
 }
 
-/// The port half's box.
+/// The port half's box, as closely as a drawing needs it.
 struct Box {
   Point3 lower = Point3::Constant(std::numeric_limits<double>::infinity());
   Point3 upper = -lower;
 };
 
+/// With four steps between two values.
+std::vector<double> finer(const std::vector<double>& breaks) {
+  constexpr int steps = 4;
+  std::vector<double> result{breaks.front()};
+  for (std::size_t i = 1; i < breaks.size(); ++i) {
+    for (int k = 1; k < steps; ++k) result.push_back(breaks[i - 1] + (breaks[i] - breaks[i - 1]) * k / steps);
+    result.push_back(breaks[i]);
+  }
+  return result;
+}
+
 Box box_of(const HullFacts& hull) {
   Box box;
   for (const geometry::NurbsSurface<3>& band : hull.port) {
-    const Points<3> points = band.control_points();
-    box.lower = box.lower.cwiseMin(points.rowwise().minCoeff());
-    box.upper = box.upper.cwiseMax(points.rowwise().maxCoeff());
+    const std::vector<double> us = finer(band.knots_u().breakpoints());
+    const std::vector<double> vs = finer(band.knots_v().breakpoints());
+    for (const double v : vs) {
+      for (const double u : us) {
+        const Point3 point = evaluate(band, Point2(u, v));
+        box.lower = box.lower.cwiseMin(point);
+        box.upper = box.upper.cwiseMax(point);
+      }
+    }
   }
   return box;
 }
 
-/// The edges of the surface: keel, knuckles and deck along the ship, the ends across.
+/// The edges of the surface: keel, knuckles, the top of a bulb and deck along the ship, the ends across.
 struct Edges {
   std::vector<NurbsCurve<3>> along;
   std::vector<NurbsCurve<3>> ends;
@@ -79,12 +96,16 @@ struct Edges {
 
 Edges edges_of(const HullFacts& hull) {
   Edges edges;
-  for (const geometry::NurbsSurface<3>& band : hull.port) {
-    const auto sides = boundary_curves(band);
-    if (edges.along.empty()) edges.along.push_back(sides[0]);
-    edges.along.push_back(sides[2]);
-    edges.ends.push_back(sides[1]);
-    edges.ends.push_back(sides[3]);
+  // With a bulb: the hull below the line from the notch, the bulb, the hull above the line. The line is no edge.
+  const bool has_bulb = hull.table.bulb.cols() > 0;
+  for (std::size_t k = 0; k < hull.port.size(); ++k) {
+    const auto sides = boundary_curves(hull.port[k]);
+    const bool is_below_line = has_bulb && k == 0;
+    const bool is_bulb = has_bulb && k == 1;
+    if (k == 0 || is_bulb) edges.along.push_back(sides[0]);
+    if (!is_below_line) edges.along.push_back(sides[2]);
+    if (!is_below_line) edges.ends.push_back(sides[1]);
+    if (!is_bulb) edges.ends.push_back(sides[3]);
   }
   return edges;
 }
@@ -116,6 +137,35 @@ struct View {
     return transform(curve, map);
   }
 };
+
+/// What three decimals show as 0 is not negative.
+double without_sign_of_zero(double value) {
+  return std::abs(value) < 5e-4 ? 0.0 : value;
+}
+
+/// Puts labels that would overlap into lanes beside one another.
+class Lanes {
+ public:
+  /// The first lane with room from `first` to `last`.
+  std::size_t take(double first, double last) {
+    std::size_t lane = 0;
+    while (lane < taken_.size() && std::ranges::any_of(taken_[lane], [&](const auto& other) {
+             return first < other.second && other.first < last;
+           }))
+      ++lane;
+    if (lane == taken_.size()) taken_.emplace_back();
+    taken_[lane].emplace_back(first, last);
+    return lane;
+  }
+
+ private:
+  std::vector<std::vector<std::pair<double, double>>> taken_;
+};
+
+/// About as wide as the text is drawn.
+double width_of(const std::string& text) {
+  return 0.62 * label_height * static_cast<double>(text.size());
+}
 
 class LinesPlan {
  public:
@@ -197,19 +247,28 @@ class LinesPlan {
 
   /// Verticals at the stations, labelled below.
   void add_station_grid(const View& view, double from, double to) {
+    Lanes lanes;
     for (const HullLine& station : lines_.stations) {
       const Point2 foot = view(station.at, from) - Point2(0.0, overhang);
+      const std::string name = station_name(station.at);
+      const double half = 0.5 * width_of(name) + 0.5;
+      const auto lane = static_cast<double>(lanes.take(foot.x() - half, foot.x() + half));
       add_line(grid_, foot, view(station.at, to) + Point2(0.0, overhang));
-      add_label(station_name(station.at), foot - Point2(0.0, 1.0), drawing::Horizontal::centre, drawing::Vertical::top);
+      add_label(name, foot - Point2(0.0, 1.0 + 1.3 * label_height * lane), drawing::Horizontal::centre,
+                drawing::Vertical::top);
     }
   }
 
   /// Horizontals at heights or half-breadths, labelled on the left.
   void add_horizontals(const View& view, const std::vector<HullLine>& lines, const char* name, double from, double to) {
+    Lanes lanes;
     for (const HullLine& line : lines) {
       const Point2 start = view(from, line.at) - Point2(overhang, 0.0);
+      const std::string label = fmt::format("{} {:.4g}", name, line.at);
+      const auto lane =
+          static_cast<double>(lanes.take(start.y() - 0.65 * label_height, start.y() + 0.65 * label_height));
       add_line(grid_, start, view(to, line.at) + Point2(overhang, 0.0));
-      add_label(fmt::format("{} {:.4g}", name, line.at), start - Point2(1.0, 0.0), drawing::Horizontal::right,
+      add_label(label, start - Point2(1.0 + lane * (width_of("WL 0.1234") + 1.0), 0.0), drawing::Horizontal::right,
                 drawing::Vertical::middle);
     }
   }
@@ -229,14 +288,17 @@ class LinesPlan {
   void draw_body() {
     const double low = box_.lower.z();
     const double high = box_.upper.z();
+    Lanes lanes;
     for (const View* side : {&starboard_, &port_}) {
       for (const HullLine& line : lines_.waterlines)
         add_line(grid_, (*side)(0.0, line.at), (*side)(half_beam(), line.at));
       for (const HullLine& line : lines_.buttocks) {
         const Point2 foot = (*side)(line.at, low) - Point2(0.0, overhang);
         add_line(grid_, foot, (*side)(line.at, high) + Point2(0.0, overhang));
-        add_label(fmt::format("B {:.4g}", line.at), foot - Point2(0.0, 1.0), drawing::Horizontal::right,
-                  drawing::Vertical::middle, 90.0);
+        const auto lane =
+            static_cast<double>(lanes.take(foot.x() - 0.65 * label_height, foot.x() + 0.65 * label_height));
+        add_label(fmt::format("B {:.4g}", line.at), foot - Point2(0.0, 1.0 + lane * (width_of("B 0.1234") + 1.0)),
+                  drawing::Horizontal::right, drawing::Vertical::middle, 90.0);
       }
       add_diagonal_traces(*side);
     }
@@ -302,11 +364,11 @@ class LinesPlan {
     drawing::TitleBlock block;
     block.title = table.name;
     block.scale = fmt::format("1:{:g}", denominator_);
-    block.fields = {{"Length", fmt::format("{:.6g}", table.length)},
-                    {"Beam", fmt::format("{:.6g}", table.beam)},
-                    {"Draught", fmt::format("{:.6g}", table.draught)},
+    block.fields = {{"Length, m", fmt::format("{:.6g}", table.length)},
+                    {"Beam, m", fmt::format("{:.6g}", table.beam)},
+                    {"Draught, m", fmt::format("{:.6g}", table.draught)},
                     {"Prismatic coefficient", fmt::format("{:.4f}", hull_.prismatic)},
-                    {"LCB, % L forward", fmt::format("{:+.3f}", 100.0 * hull_.buoyancy_centre)}};
+                    {"LCB, % L forward", fmt::format("{:+.3f}", without_sign_of_zero(100.0 * hull_.buoyancy_centre))}};
     const drawing::Rectangle drawn = extent(drawing_);
     const std::size_t frame = drawing_.add_layer({"title block", drawing::black, 0.35});
     const Point2 corner(std::max(drawn.upper.x(), half_breadths_(box_.upper.x(), 0.0).x() + overhang + gap +

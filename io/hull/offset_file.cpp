@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -35,15 +36,25 @@ struct Line {
   std::vector<std::string_view> cells;
 };
 
-/// The lines that say something, in cells.
+void check_encoding(std::string_view text, const std::string& file) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw InputError(fmt::format("{}: found text in UTF-16; expected UTF-8", file));
+  const std::size_t zero = text.find('\0');
+  if (zero == std::string_view::npos) return;
+  const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n') + 1;
+  throw InputError(fmt::format("{}:{}: found a byte 0; expected text, cells with commas between them", file, line));
+}
+
+/// The lines that say something, in cells. They end with LF, CR LF or CR.
 std::vector<Line> content_lines(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::vector<Line> lines;
   for (int number = 1; !text.empty(); ++number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    const std::size_t ending = text.substr(end).starts_with("\r\n") ? 2 : 1;
     std::string_view line = text.substr(0, end);
     line = trimmed(line.substr(0, line.find('#')));
-    text.remove_prefix(std::min(end + 1, text.size()));
+    text.remove_prefix(std::min(end + ending, text.size()));
     if (line.empty()) continue;
     Line& cells = lines.emplace_back(Line{number, {}});
     for (std::size_t begin = 0; begin <= line.size();) {
@@ -95,7 +106,10 @@ struct EdgeColumns {
 
 class OffsetReader {
  public:
-  OffsetReader(std::string_view text, const std::string& file) : file_(file), lines_(content_lines(text)) {}
+  OffsetReader(std::string_view text, const std::string& file) : file_(file) {
+    check_encoding(text, file);
+    lines_ = content_lines(text);
+  }
 
   OffsetTable read() {
     read_keys();
@@ -110,7 +124,7 @@ class OffsetReader {
       geometry::check(table_);
       geometry::hull_sections(table_);
     } catch (const GeometryError& error) {
-      throw InputError(fmt::format("{}: {}", file_, error.what()));
+      throw InputError(fmt::format("{}: {}", place_of(error.what()), error.what()));
     }
     return std::move(table_);
   }
@@ -118,6 +132,21 @@ class OffsetReader {
  private:
   [[noreturn]] void refuse(const Line& line, const std::string& message) const {
     throw InputError(fmt::format("{}:{}: {}", file_, line.number, message));
+  }
+
+  /// The file, and the line of the first station that the message names.
+  std::string place_of(std::string_view message) const {
+    constexpr std::string_view word = "station ";
+    const std::size_t at = message.find(word);
+    if (at == std::string_view::npos) return file_;
+    const std::string_view rest = message.substr(at + word.size());
+    for (std::size_t row = 0; row < names_.size(); ++row) {
+      const std::string& name = names_[row];
+      const bool is_name = rest.starts_with(name) && (rest.size() == name.size() || rest[name.size()] == ' ' ||
+                                                      rest[name.size()] == ',' || rest[name.size()] == ':');
+      if (is_name) return fmt::format("{}:{}", file_, row_lines_[row]);
+    }
+    return file_;
   }
 
   double number(const Line& line, std::size_t cell, std::string_view column) const {
@@ -142,6 +171,9 @@ class OffsetReader {
 
   void read_key(const Line& line) {
     const std::string_view key = line.cells.front();
+    const auto [earlier, is_new] = key_lines_.emplace(key, line.number);
+    if (!is_new)
+      refuse(line, fmt::format("found the key \"{}\" again, as in line {}; expected it once", key, earlier->second));
     const auto text = [&](std::size_t cell) { return cell < line.cells.size() ? line.cells[cell] : ""; };
     if (key == "name" || key == "source") {
       // The text may have commas.
@@ -198,6 +230,11 @@ class OffsetReader {
                              cell + 1, head));
   }
 
+  static bool is_breadth(const Column& column) {
+    return column.kind == ColumnKind::waterline || column.kind == ColumnKind::half_breadth ||
+           column.kind == ColumnKind::tangent;
+  }
+
   EdgeColumns& edge(const std::string& name) {
     const auto found = std::find_if(edges_.begin(), edges_.end(), [&](const auto& e) { return e.name == name; });
     return found == edges_.end() ? edges_.emplace_back(EdgeColumns{name, {}, {}}) : *found;
@@ -205,15 +242,21 @@ class OffsetReader {
 
   void read_head() {
     const Line& head = lines_[next_++];
+    head_line_ = head.number;
     columns_.push_back({ColumnKind::station, {}, 0.0});
     for (std::size_t cell = 1; cell < head.cells.size(); ++cell) {
       const Column column = column_of(head, cell);
-      const bool is_breadth = column.kind == ColumnKind::half_breadth || column.kind == ColumnKind::tangent;
-      if (is_breadth || column.kind == ColumnKind::height) {
+      const bool is_edge = column.kind == ColumnKind::half_breadth || column.kind == ColumnKind::tangent;
+      if (is_edge || column.kind == ColumnKind::height) {
         EdgeColumns& own = edge(column.name);
-        std::optional<std::size_t>& place = is_breadth ? own.half_breadth : own.height;
+        std::optional<std::size_t>& place = is_edge ? own.half_breadth : own.height;
         if (place) refuse(head, fmt::format("column {}: \"{}\" is there twice", cell + 1, head.cells[cell]));
         place = cell;
+      }
+      for (std::size_t before = 1; before < cell && column.kind == ColumnKind::waterline; ++before) {
+        if (columns_[before].kind != ColumnKind::waterline || columns_[before].height != column.height) continue;
+        refuse(head, fmt::format("column {}: found the height {} again, as in column {}; expected it once", cell + 1,
+                                 head.cells[cell], before + 1));
       }
       table_.has_tangent_bottom = table_.has_tangent_bottom || column.kind == ColumnKind::tangent;
       columns_.push_back(column);
@@ -221,7 +264,7 @@ class OffsetReader {
     heads_.assign(head.cells.begin(), head.cells.end());
   }
 
-  static bool is_contour(std::string_view cell) { return cell == "stem" || cell == "stern"; }
+  static bool is_contour(std::string_view cell) { return cell == "stem" || cell == "stern" || cell == "bulb"; }
 
   void read_rows() {
     for (; next_ < lines_.size() && !is_contour(lines_[next_].cells.front()); ++next_) {
@@ -229,7 +272,9 @@ class OffsetReader {
       if (line.cells.size() != columns_.size()) {
         refuse(line, fmt::format("found {} cells; expected {}, as in the head of the table{}", line.cells.size(),
                                  columns_.size(),
-                                 line.cells.size() > columns_.size() ? " (numbers have points, not commas)" : ""));
+                                 line.cells.size() > columns_.size()
+                                     ? " (numbers have points, not commas)"
+                                     : " (a cell without a value stays empty; commas are between cells)"));
       }
       std::vector<double> row(columns_.size(), none);
       const bool is_largest = line.cells.front() == "max";
@@ -237,6 +282,10 @@ class OffsetReader {
         const std::string_view text = line.cells[cell];
         if (cell > 0 && (text.empty() || text == "-")) continue;
         row[cell] = number(line, cell, heads_[cell]);
+        if (row[cell] < 0.0 && is_breadth(columns_[cell])) {
+          refuse(line, fmt::format("column {} ({}): found the half-breadth {}; expected none below 0", cell + 1,
+                                   heads_[cell], text));
+        }
       }
       if (is_largest) {
         if (breadths_ != BreadthUnit::waterline)
@@ -248,8 +297,10 @@ class OffsetReader {
         rows_.push_back(std::move(row));
       }
     }
-    if (rows_.size() < 2)
-      throw InputError(fmt::format("{}: found {} stations; expected at least two", file_, rows_.size()));
+    if (rows_.size() < 2) {
+      throw InputError(fmt::format("{}:{}: found {} station(s) below the head of the table; expected at least two",
+                                   file_, head_line_, rows_.size()));
+    }
     if (breadths_ == BreadthUnit::waterline && largest_.empty())
       throw InputError(fmt::format("{}: found no row \"max\"; expected one with \"half_breadths,waterline\"", file_));
   }
@@ -367,14 +418,17 @@ class OffsetReader {
       const Line& line = lines_[next_];
       const std::string_view kind = line.cells.front();
       if (!is_contour(kind) || line.cells.size() < 3 || line.cells.size() > 4) {
-        refuse(line, fmt::format("found \"{}\" with {} cells; expected \"stem\" or \"stern\", x, a height, and perhaps "
-                                 "the name of a knuckle",
-                                 kind, line.cells.size()));
+        refuse(line,
+               fmt::format("found \"{}\" with {} cells; expected \"stem\", \"stern\" or \"bulb\", x, a height, and "
+                           "perhaps the name of a knuckle",
+                           kind, line.cells.size()));
       }
       const bool is_stem = kind == "stem";
-      Points<2>& contour = is_stem ? table_.stem : table_.stern;
+      Points<2>& contour = is_stem ? table_.stem : kind == "stern" ? table_.stern : table_.bulb;
       contour.conservativeResize(2, contour.cols() + 1);
       contour.rightCols<1>() << x_of(number(line, 1, "x")), height_of(number(line, 2, "height"));
+      if (line.cells.size() == 4 && kind == "bulb")
+        refuse(line, fmt::format("column 4: found \"{}\"; expected no knuckle on the bulb", line.cells[3]));
       if (line.cells.size() == 4) add_knuckle_end(line, is_stem, static_cast<int>(contour.cols()) - 1);
     }
     for (const bool is_stem : {true, false}) {
@@ -405,6 +459,8 @@ class OffsetReader {
 
   std::string file_;
   std::vector<Line> lines_;
+  std::map<std::string_view, int> key_lines_;
+  int head_line_ = 0;
   std::size_t next_ = 0;
   OffsetTable table_;
   std::optional<double> after_perpendicular_;
@@ -488,7 +544,8 @@ std::string offsets_text(const OffsetTable& table) {
   text += head_line(table);
   for (Eigen::Index i = 0; i < table.half_breadths.cols(); ++i) text += row_line(table, i);
   return text + contour_lines(table, "stem", table.stem, table.stem_knuckles) +
-         contour_lines(table, "stern", table.stern, table.stern_knuckles);
+         contour_lines(table, "stern", table.stern, table.stern_knuckles) +
+         contour_lines(table, "bulb", table.bulb, {});
 }
 
 }  // namespace isorim::io

@@ -46,7 +46,15 @@ Json table_json(const NumberTable& table) {
   return json;
 }
 
+double largest_modulus(const std::vector<double>& values) {
+  double largest = 0.0;
+  for (const double x : values)
+    if (std::isfinite(x)) largest = std::max(largest, std::abs(x));
+  return largest;
+}
+
 /// Each quantity over its largest modulus: they have nothing else in common. Centres count from amidships, forward.
+/// What is zero, centres of hulls that are symmetric fore and aft up to rounding, is left out.
 void write_curves_of_form(const std::filesystem::path& path, const NumberTable& table, double amidships,
                           const std::string& unit) {
   svg::Plot plot;
@@ -58,12 +66,13 @@ void write_curves_of_form(const std::filesystem::path& path, const NumberTable& 
   for (const char* name : {"displacement", "waterplane_area", "wetted_surface", "vcb", "it", "il", "kmt", "lcb", "lcf",
                            "cb", "cp", "cm", "cwp"}) {
     std::vector<double> values = table.column(name);
-    if (name[0] == 'l')
+    double rounding = 0.0;
+    if (name[0] == 'l') {
       for (double& x : values) x -= amidships;
-    double largest = 0.0;
-    for (const double x : values)
-      if (std::isfinite(x)) largest = std::max(largest, std::abs(x));
-    if (!(largest > 0.0)) continue;
+      rounding = 1e-9 * largest_modulus(table.column("length"));
+    }
+    const double largest = largest_modulus(values);
+    if (!(largest > rounding)) continue;
     for (double& x : values) x /= largest;
     plot.series.push_back(line(fmt::format("{} ({:.4g})", name, largest), std::move(values), table.column("draught")));
   }

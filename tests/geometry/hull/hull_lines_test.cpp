@@ -11,6 +11,7 @@
 #include "geometry/hull/fairness.h"
 #include "geometry/hull/hull.h"
 #include "geometry/shapes/transforms.h"
+#include "tests/geometry/hull/bulb_hull.h"
 #include "tests/geometry/hull/wigley.h"
 
 namespace isorim::geometry {
@@ -144,6 +145,29 @@ TEST(HullLines, ViewsThatDisagreeAreFound) {
       EXPECT_GT(compare(moved.*pair.first, lines.*pair.second).largest_distance, 1e-10);
     }
   }
+}
+
+TEST(HullLines, ViewsOfABulbousBowAgree) {
+  const LinePlanes cuts{{45.0, 93.3, 96.7, 100.2, 103.7}, {2.1, 3.3, 4.4, 4.9, 7.3}, {0.6, 1.3, 4.0}, {{6.0, 0.8}}};
+  const HullLines lines = hull_lines(hull_surface(hull_sections(bulb_table(1))), cuts);
+  for (const ViewPair& pair : view_pairs) {
+    SCOPED_TRACE(pair.views);
+    const Agreement agreement = compare(lines.*pair.first, lines.*pair.second);
+    EXPECT_EQ(agreement.unlike_pairs, 0);
+    EXPECT_GT(agreement.points, 2);
+    EXPECT_LT(agreement.largest_distance, 1e-10);
+  }
+  // Below the notch a waterline goes on to the bulb's end, above it ends at the stem; each is one curve.
+  const auto foremost = [](const HullLine& line) {
+    double x = 0.0;
+    for (const SectionSpline& spline : line.splines) x = std::max(x, spline.curve.control_points().row(0).maxCoeff());
+    return x;
+  };
+  EXPECT_NEAR(foremost(lines.waterlines[1]), 82.0 + 24.0 * std::sqrt(1.0 - std::pow(0.3 / 2.2, 2)), 0.01);
+  EXPECT_NEAR(foremost(lines.waterlines[2]), 82.0 + 24.0 * std::sqrt(1.0 - std::pow(1.4 / 2.2, 2)), 0.05);
+  EXPECT_NEAR(foremost(lines.waterlines[3]), BulbHull::stem(4.9), 1e-6);
+  for (const HullLine& line : lines.waterlines) EXPECT_EQ(line.curves.size(), 1u) << line.at;
+  for (const HullLine& line : lines.stations) EXPECT_EQ(line.curves.size(), 1u) << line.at;
 }
 
 TEST(HullLines, OfWigleysHullFollowTheFormula) {

@@ -110,6 +110,48 @@ TEST_F(Hull, IsFairedWithinATolerance) {
   EXPECT_EQ(run({"hulls", "export", library, "s60", path("bad.csv"), "--fair", "0"}).status, 2);
 }
 
+// As in a case: the measures fall, no offset is off by more than what is allowed.
+TEST_F(Hull, IsFairedInACase) {
+  const std::string hull = "[geometry]\ntype = 'hull'\noffsets = '" + series60 + "'\nscale = { length = 120 }\n";
+  ASSERT_EQ(run_case(hull).status, 0);
+  const nlohmann::json before = results()["hull"];
+  EXPECT_FALSE(before.contains("fairing"));
+  const ProgramResult result = run_case(hull + "fair = 0.004\n");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("faired: "));
+  const nlohmann::json after = results()["hull"];
+  const nlohmann::json& fairing = after["fairing"];
+  EXPECT_EQ(fairing["tolerance"], 0.004);
+  EXPECT_GT(fairing["moved"], 50);
+  EXPECT_LE(fairing["largest_move"], 0.004 * (1.0 + 1e-12));
+  EXPECT_LT(fairing["roughness"], 0.9 * fairing["roughness_before"].get<double>());
+  EXPECT_EQ(fairing["bending_energy_before"], before["bending_energy"]);
+  const int changes =
+      fairing["station_sign_changes_before"].get<int>() + fairing["waterline_sign_changes_before"].get<int>();
+  EXPECT_EQ(changes, before["curvature_sign_changes"]);
+  EXPECT_LT(after["curvature_sign_changes"], changes);
+  // Of the offsets as given from the faired surface.
+  EXPECT_GT(after["offset_distance"], 1e-4);
+  EXPECT_LE(after["offset_distance"], 0.004 * (1.0 + 1e-9));
+  EXPECT_LT(before["offset_distance"], 1e-11);
+}
+
+TEST_F(Hull, ALibraryStaysAsItIsWhenAnImportFails) {
+  const std::string library = path("hulls.h5");
+  ASSERT_EQ(run({"hulls", "import", library, series60, "--name", "s60"}).status, 0);
+  const std::string before = read_file(library);
+  std::string bad = read_file(series60);
+  bad.replace(bad.find("0.831"), 5, "-0.831");
+  write(path("bad.csv"), bad);
+  const ProgramResult result = run({"hulls", "import", library, path("bad.csv")});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("bad.csv:23: column 2 (tangent): found the half-breadth -0.831"),
+                                HasSubstr("expected none below 0")));
+  EXPECT_EQ(read_file(library), before);
+  EXPECT_EQ(run({"hulls", "import", path("none.h5"), path("bad.csv")}).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("none.h5")));
+}
+
 class BadHull : public BadCaseTest {};
 
 TEST_P(BadHull, IsRefused) {
@@ -123,6 +165,8 @@ const std::vector<BadCase> bad_hulls{
      {"found offsets = \"wigly\"; expected a file (.csv)"}},
     {"NoSuchFile", "[geometry]\ntype = 'hull'\noffsets = 'none.csv'\n", {"none.csv"}},
     {"NoSuchLibrary", wigley + "library = 'none.h5'\n", {"none.h5: there is no such file"}},
+    {"FairByNothing", wigley + "fair = 0\n", {"geometry.fair", "found 0"}},
+    {"FairByText", wigley + "fair = true\n", {"geometry.fair"}},
     {"NegativeScale", wigley + "scale = { beam = -1 }\n", {"geometry.scale.beam"}},
     {"ImpossibleShift", wigley + "shift = { prismatic = 0.99 }\n", {"would move stations past one another"}},
     {"FlatDiagonal", wigley + "[lines_plan]\ndiagonals = [[1, 90]]\n", {"found a diagonal at 90 degrees"}},

@@ -53,6 +53,8 @@ TEST_F(HydrostaticCases, AreInTheResultsAndFiles) {
               json.at("righting_arms").at("arm")[1].get<double>() + 0.3 * std::sin(std::atan(t)), 1e-12);
   EXPECT_THAT(read_file(folder() / "out/curves_of_form.csv"), StartsWith("draught,trim,heel,displacement,volume,lcb"));
   EXPECT_THAT(read_file(folder() / "out/righting_arms.csv"), StartsWith("heel,arm,area,draught,trim,gmt\n0,"));
+  // Symmetric fore and aft: centres amidships but for rounding, which is no curve.
+  EXPECT_EQ(read_file(folder() / "out/curves_of_form.svg").find("lcb ("), std::string::npos);
   for (const char* name : {"curves_of_form.svg", "bonjean.svg", "righting_arms.svg", "cross_curves.svg"})
     EXPECT_THAT(read_file(folder() / "out" / name), HasSubstr("class=\"series\"")) << name;
 }

@@ -63,6 +63,18 @@ TEST_F(HullLibrary, KeepsTablesBitForBit) {
   EXPECT_EQ(entries[1].source, "nobody");
 }
 
+TEST_F(HullLibrary, KeepsBulbs) {
+  const std::string bulbous =
+      "name,Bulbous\nlength,10\nbeam,3\ndraught,0.6\n"
+      "station,keel half-breadth,keel height,0.2,0.4,0.6,1.2,deck half-breadth,deck height\n"
+      "0,0,0,0,0,0,0,0,1.4\n5,0,0,0.8,1.1,1.2,1.5,1.6,1.4\n10.5,0,0.1,0.2,0.15,,,0,0.5\n"
+      "stem,10,0.55\nstem,10.5,1.4\nbulb,10.7,0.15\nbulb,11,0.3\nbulb,10.7,0.45\n";
+  const geometry::OffsetTable table = parse_offsets(bulbous, "bulbous.csv");
+  store_hull(library_, "bulbous", table, ExistingHull::refuse);
+  EXPECT_EQ(read_hull(library_, "bulbous").bulb, table.bulb);
+  EXPECT_EQ(offsets_text(read_hull(library_, "bulbous")), offsets_text(table));
+}
+
 TEST_F(HullLibrary, ReplacesAndRemovesOnlyWhatIsMeant) {
   const geometry::OffsetTable small = geometry::wigley_offsets(1.0, 0.1, 0.1);
   const geometry::OffsetTable large = geometry::wigley_offsets(10.0, 1.0, 0.625);

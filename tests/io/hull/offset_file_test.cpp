@@ -66,6 +66,52 @@ TEST(OffsetFile, ReadsLengthsKnucklesAndContours) {
   EXPECT_EQ(table.baseline, 0.0);
 }
 
+const std::string bulbous =
+    "name,Bulbous\nlength,10\nbeam,3\ndraught,0.6\n"
+    "station,keel half-breadth,keel height,0.2,0.4,0.6,1.2,deck half-breadth,deck height\n"
+    "0,0,0,0,0,0,0,0,1.4\n"
+    "5,0,0,0.8,1.1,1.2,1.5,1.6,1.4\n"
+    "9,0,0,0.4,0.4,0.3,0.5,0.6,1.4\n"
+    "10.5,0,0.1,0.2,0.15,,,0,0.5\n"
+    "stem,10,0.55\nstem,10.5,1.4\nbulb,10.7,0.15\nbulb,11,0.3\nbulb,10.7,0.45\n";
+
+TEST(OffsetFile, ReadsBulbs) {
+  const geometry::OffsetTable table = parse_offsets(bulbous, "bulbous.csv");
+  EXPECT_EQ(table.stem.cols(), 2);
+  ASSERT_EQ(table.bulb.cols(), 3);
+  EXPECT_EQ(table.bulb(0, 1), 11.0);
+  EXPECT_EQ(table.bulb(1, 1), 0.3);
+  EXPECT_FALSE(is_bulb_station(table, 2));
+  EXPECT_TRUE(is_bulb_station(table, 3));
+}
+
+std::string with_ends(std::string text, const std::string& end) {
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + end.size()))
+    text.replace(at, 1, end);
+  return text;
+}
+
+TEST(OffsetFile, ReadsAnyLineEndsAndAByteOrderMark) {
+  const geometry::OffsetTable table = parse_offsets(yacht, "yacht.csv");
+  for (const std::string& text : {with_ends(yacht, "\r\n"), with_ends(yacht, "\r"), "\xEF\xBB\xBF" + yacht}) {
+    const geometry::OffsetTable same = parse_offsets(text, "yacht.csv");
+    EXPECT_EQ(same.name, table.name);
+    EXPECT_EQ(same.stations, table.stations);
+    EXPECT_EQ(same.stem, table.stem);
+  }
+  // Lines count the same.
+  for (const char* end : {"\n", "\r\n", "\r"}) {
+    std::string text = with_ends(yacht, end);
+    text.replace(text.find("1.2,1.5"), 3, "1.x");
+    try {
+      parse_offsets(text, "bad.csv");
+      ADD_FAILURE() << "not refused";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("bad.csv:7: column 5"));
+    }
+  }
+}
+
 void expect_equal(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   ASSERT_EQ(a.rows(), b.rows());
   ASSERT_EQ(a.cols(), b.cols());
@@ -77,7 +123,7 @@ void expect_equal(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 }
 
 TEST(OffsetFile, WritesWhatItReads) {
-  for (const std::string& text : {cargo, yacht}) {
+  for (const std::string& text : {cargo, yacht, bulbous}) {
     const geometry::OffsetTable table = parse_offsets(text, "given.csv");
     const geometry::OffsetTable back = parse_offsets(offsets_text(table), "written.csv");
     EXPECT_EQ(back.name, table.name);
@@ -92,6 +138,7 @@ TEST(OffsetFile, WritesWhatItReads) {
     expect_equal(back.keel, table.keel);
     expect_equal(back.deck, table.deck);
     expect_equal(back.stem, table.stem);
+    expect_equal(back.bulb, table.bulb);
     ASSERT_EQ(back.knuckles.size(), table.knuckles.size());
     for (std::size_t k = 0; k < table.knuckles.size(); ++k)
       expect_equal(back.knuckles[k].places, table.knuckles[k].places);
@@ -149,11 +196,27 @@ TEST(OffsetFile, RefusesWithLineAndColumn) {
   expect_refused(cargo, "10,0,0.5", "5,0,0.5", "station 5 is there twice");
   expect_refused(cargo, "deck height", "deck half-breadth", "is there twice");
   expect_refused(yacht, "-4.5,0,0.3,-,0.5,1", "-4.5,0,0.3,-,0.5,-1",
-                 "the half-breadth at station -4.5, height 1.2 is -1");
+                 "bad.csv:6: column 6 (1.2): found the half-breadth -1; expected none below 0");
   expect_refused(yacht, "0.8,chine", "0.8,chain", "column 4: found the knuckle \"chain\"");
   expect_refused(yacht, "0.8,chine", "0.8", "the knuckle \"chine\" has no end on the stem");
   expect_refused(yacht, "stem,5,1.2", "stem,3,1.2", "expected it ahead of all stations");
   expect_refused(yacht, "stem,5,1.2", "stern", "found \"stern\" with 1 cells");
+  expect_refused(yacht, "z=0.2", "0.6", "bad.csv:5: column 5: found the height wl 0.6 again, as in column 4");
+  expect_refused(yacht, "beam,3\n", "beam,3\nbeam,4\n", "bad.csv:4: found the key \"beam\" again, as in line 3");
+  expect_refused(yacht, "0,0,0,0.4,1.2,1.5,", "0,0,0,0.4;1.2;1.5;", "found 5 cells; expected 8, as in the head of the");
+  expect_refused(yacht, "0,0,0,0.4,1.2,1.5,", "0,0,0,nan,1.2,1.5,", "bad.csv:7: column 4 (z=0.2): found \"nan\"");
+  expect_refused(yacht, "0,0,0,0.4,1.2,1.5,", "0,0,0,inf,1.2,1.5,", "bad.csv:7: column 4 (z=0.2): found \"inf\"");
+  expect_refused(cargo, "5,1,1,1,1.4,1,1", "5,,,,,,", "bad.csv:12: hull \"Cargo, small\": station 5 has 0 point(s)");
+  expect_refused(bulbous, "5,0,0,0.8,1.1", "5,0,0,0,1.1", "bad.csv:7: hull \"Bulbous\": station 5 has no thickness");
+  expect_refused(bulbous, "0.15,,,0,0.5", "0.15,,,0.1,0.5", "bad.csv:9: hull \"Bulbous\": station 10.5 lies ahead of");
+  expect_refused(bulbous, "bulb,11,0.3", "bulb,11,0.3,chine", "bad.csv:13: column 4: found \"chine\"; expected no");
+  expect_refused(bulbous, "stem,10,0.55\nstem,10.5,1.4\n", "", "there is a bulb but no stem");
+  expect_refused(bulbous, "bulb,11", "bulb,10.2", "point 2 of the bulb lies at x = 10.2; expected it ahead of all");
+  const std::size_t row = yacht.find("0,0,0,0.4");
+  expect_refused(yacht, yacht.substr(row), "", "bad.csv:5: found 1 station(s) below the head of the table");
+  expect_refused(yacht, yacht, "", "bad.csv: found no table; expected a line that begins with \"station\"");
+  expect_refused(yacht, "name", "\xFF\xFEn", "found text in UTF-16; expected UTF-8");
+  expect_refused(yacht, "0.4", std::string(1, '\0'), "bad.csv:7: found a byte 0; expected text");
   expect_refused(yacht, "chine half-breadth", "chine area", "column 7: found \"chine area\"");
 }
 
